@@ -34,7 +34,7 @@ from sandbox.session.commands import (
     apply,
 )
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
-from sandbox.session.replay.script import read_script
+from sandbox.session.replay.reader import read_script
 
 __all__ = [
     "COMMAND_TYPES",

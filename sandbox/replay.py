@@ -3,13 +3,23 @@
 `Session.record_to(path)` writes one; `docs/determinism.md` says what is promised of them.
 """
 
-from sandbox.session.replay.divergence import Divergence
+from sandbox.session.compare.comparison import Comparison, compare, verify
+from sandbox.session.compare.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
-from sandbox.session.replay.verify import Comparison, compare, verify
-from sandbox.session.shrink.diverging import Diverges
-from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
-from sandbox.session.shrink.kinds import CheckFails, Crashes, EnergyGrows, Freezes, IsLost, Leaves
+from sandbox.session.shrink.failures import (
+    CheckFails,
+    Crashes,
+    Diverges,
+    EnergyGrows,
+    Failure,
+    FailureError,
+    FailureSeen,
+    FailureWatch,
+    Freezes,
+    IsLost,
+    Leaves,
+)
 from sandbox.session.shrink.shrinker import find_failure
 
 __all__ = [

@@ -11,11 +11,11 @@ from typing import Any
 
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.query import grip_radius
+from sandbox.session.checking import solution_of
 from sandbox.session.commands import AddBody
 from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.session import Session
-from sandbox.session.solution import solution_of
 from sandbox.tools.dropping import PARTS
 
 # Records of commands, each with its time [s], that are one gesture.

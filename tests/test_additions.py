@@ -17,8 +17,8 @@ from pathlib import Path
 from sandbox.level.reading.files import parse_level
 from sandbox.physics.step import step
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.script import read_script
-from sandbox.session.replay.verify import verify
+from sandbox.session.replay.reader import read_script
+from sandbox.session.compare.comparison import verify
 from sandbox.session.session import Session
 
 def level(more=""):
@@ -184,7 +184,7 @@ from dataclasses import dataclass
 
 from sandbox.cli.base.command import Subcommand
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
-from sandbox.cli.base.options import argument
+from sandbox.cli.base.command import argument
 
 
 @dataclass(frozen=True, kw_only=True)

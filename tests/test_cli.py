@@ -425,7 +425,7 @@ def test_a_start_in_a_folder_that_is_gone_is_refused_in_one_line(command, tmp_pa
 
 
 def test_a_recording_that_breaks_off_on_a_full_disk_is_told_and_the_run_goes_on(rope, tmp_path, capsys, monkeypatch):
-    from sandbox.session.replay.writer import Recorder
+    from sandbox.session.replay.recording import Recorder
 
     write = Recorder.write_tick
 
@@ -495,7 +495,7 @@ def test_a_script_that_is_refused_leaves_no_recording_and_an_older_one_as_it_was
 
 @pytest.mark.parametrize("suffix", ["jsonl", "gz"])
 def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_path, suffix, monkeypatch, capsys):
-    from sandbox.session.replay.writer import Recorder
+    from sandbox.session.replay.recording import Recorder
 
     write, replay = Recorder.write_tick, tmp_path / f"run.{suffix}"
 

@@ -11,17 +11,16 @@ from typing import get_type_hints
 import pytest
 
 from sandbox.cli import COMMANDS, main, play
-from sandbox.cli.base.command import Subcommand
-from sandbox.cli.base.options import argument, declare, flag, option, option_or, read
+from sandbox.cli.base.command import Subcommand, argument, declare, flag, option, option_or, read
 from sandbox.terminal import seconds
 
 ROOT = Path(__file__).resolve().parents[1]
 # Functions that make a parser and read what it gave, both in one place.
-READERS = {"cli/base/options.py", "cli/base/command.py", "cli/__init__.py", "physics/jit/making/libraries.py"}
+READERS = {"cli/base/command.py", "cli/__init__.py", "physics/jit/making/libraries.py"}
 WRONG = """
 from dataclasses import dataclass
 from sandbox.cli.base.command import Subcommand, WindowOptions
-from sandbox.cli.base.options import flag, option
+from sandbox.cli.base.command import flag, option
 from sandbox.cli.play import PlayOptions
 from sandbox.terminal import seconds
 

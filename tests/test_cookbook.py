@@ -9,8 +9,7 @@ from sandbox.editor.scene import make_scene
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import read_level
 from sandbox.physics.analysis.query import shown_particles
-from sandbox.session.check_run import run_checks
-from sandbox.session.held_keys import HeldKeys
+from sandbox.session.check_run import HeldKeys, run_checks
 from sandbox.session.session import Session
 from tests.pictures import cookbook
 

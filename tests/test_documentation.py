@@ -26,7 +26,7 @@ from sandbox.physics.world import World
 from sandbox.session.check_run import run_checks
 from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.outcome import outcome
-from sandbox.session.replay.script import read_script
+from sandbox.session.replay.reader import read_script
 from sandbox.session.session import Session
 from tests.pictures import gallery, readme
 from tests.support.failing import put_failing

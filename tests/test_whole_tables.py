@@ -14,6 +14,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from sandbox.session.compare.divergence import differing_particle, first_difference
 
 import sandbox
 from sandbox.app.draw import scene, textures
@@ -49,12 +50,11 @@ from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.snapshot import hash_by_array, leave, restore, take
 from sandbox.physics.softness.settling import Support
 from sandbox.physics.state import COLUMNS, Family
+from sandbox.session import event_log
 from sandbox.session.commands import Grab
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.events import deeds, story
-from sandbox.session.replay.divergence import differing_particle, first_difference
-from sandbox.session.replay.writer import _place as place_of
+from sandbox.session.replay.recording import _place as place_of
 from sandbox.session.session import Session
 from tests.support.rules_level import answering, run
 from tests.test_architecture import sources
@@ -121,8 +121,8 @@ REST = {
     "sandbox.physics.softness.settling._drop: body.support": {
         Support.ARM, Support.HANGING, Support.HUB, Support.SPANNED
     },
-    "sandbox.session.events.deeds._EACH": deeds._WORDS.keys() | deeds._PASSED_OVER | {"grab", "release"},
-    "sandbox.session.events.deeds._WORDS": deeds._EACH.keys() | deeds._PASSED_OVER | {"grab", "release"},
+    "sandbox.session.event_log._EACH": event_log._WORDS.keys() | event_log._PASSED_OVER | {"grab", "release"},
+    "sandbox.session.event_log._WORDS": event_log._EACH.keys() | event_log._PASSED_OVER | {"grab", "release"},
     # Picked by other means: the particle that is nearest, a box that is drawn, nothing.
     "sandbox.app.edit.canvas.picking._HINTS": {""},
     "sandbox.app.edit.canvas.picking._KINDS": {"particle", "box", ""},
@@ -361,7 +361,7 @@ def test_every_action_and_question_of_rules_is_told_and_given_to_pages(world):
     actions = [action for rule in level.rules for action in rule.then]
     assert {action.done[0] for action in actions} == set(DOES)
     assert set(ASKS) <= {name for rule in level.rules for name in asked_in(rule.when)}
-    assert all(map(rule_text, level.rules)) and all(map(story._told, actions))
+    assert all(map(rule_text, level.rules)) and all(map(event_log._action_text, actions))
     assert len(start.about(world, 1)["rules"]) == len(level.rules)
 
 
@@ -374,6 +374,6 @@ def asked_in(question):
 def test_what_a_person_does_by_any_command_is_told_in_words_or_passed_over(kind):
     record = {"type": kind, "particle": "red.1", "grab": 0, "springs": ["red:1"], "part": "cart", "value": 1.0}
     before = [ScriptLine(1, 1, record | {"type": "grab"}, 1)] if kind == "release" else []
-    told = list(deeds.deeds_in([*before, ScriptLine(2, 2, record, 2)]))[len(before) :]
-    assert bool(told) == (kind not in deeds._PASSED_OVER)
+    told = list(event_log.user_actions([*before, ScriptLine(2, 2, record, 2)]))[len(before) :]
+    assert bool(told) == (kind not in event_log._PASSED_OVER)
     assert not any("_" in each.text for each in told)

@@ -4,9 +4,8 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, option, optional_argument, repeated_option
 from sandbox.cli.base.inputs import EXIT_OK, Refused, is_replay, level_of, recording_of
-from sandbox.cli.base.options import argument, option, optional_argument, repeated_option
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level

@@ -5,9 +5,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, needed_option, option
 from sandbox.cli.base.inputs import EXIT_OK, Refused
-from sandbox.cli.base.options import argument, needed_option, option
 
 # What --as and --width may be; the width in metres.
 KINDS = ("jelly", "ground")

@@ -5,9 +5,8 @@ import sys
 from contextlib import closing
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED
-from sandbox.cli.base.options import arguments, flag, option
 from sandbox.terminal import Progress, cores, count, processes, tell
 
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.

@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, Refused, level_or_replay
-from sandbox.cli.base.options import argument, flag, option
-from sandbox.cli.base.pages import PAGE, watching
+from sandbox.cli.base.running import PAGE, watching
 from sandbox.terminal import Progress, interrupted_between_ticks, seconds
 
 if TYPE_CHECKING:
-    from sandbox.session.replay.difference import ComparedRun, RunDifference
+    from sandbox.session.compare.comparison import ComparedRun, RunDifference
 
 # How long two levels are compared where neither is a recording [s].
 DIFF_SECONDS = 10.0
@@ -34,7 +33,7 @@ class DiffOptions:
 
 def diff(options: DiffOptions) -> int:
     """Say where two runs part."""
-    from sandbox.session.replay.difference import ComparedRun, difference
+    from sandbox.session.compare.comparison import ComparedRun, difference
     from sandbox.session.replay.recording import ReplayError
 
     _check_output(options.output)
@@ -77,14 +76,13 @@ def _json(options: DiffOptions, found: "RunDifference") -> dict[str, Any]:
     from sandbox.session.probe import finite
 
     where = None if found.divergence is None else finite(asdict(found.divergence))
-    apart = {} if found.apart is None else {"apart": finite(asdict(found.apart))}
+    distance = {} if found.distance is None else {"apart": finite(asdict(found.distance))}
     return {"a": options.first, "b": options.second, "equal": found.is_equal, "level": list(found.level),
-            "commands": list(found.commands), "divergence": where, "lines": found.lines(), **apart}  # fmt: skip
+            "commands": list(found.commands), "divergence": where, "lines": found.lines(), **distance}  # fmt: skip
 
 
 def _draw_difference(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference", path: Path) -> None:
-    from sandbox.session.player.page import PlayerPage
-    from sandbox.session.player.report import command_marks, first_difference_shown, played
+    from sandbox.session.player.page import PlayerPage, command_marks, first_difference_shown, played
 
     ticks = found.ticks
     tick = found.divergence.tick if found.divergence else ticks
@@ -105,10 +103,10 @@ def _draw_difference(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDiffer
 
 def _draw_both(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference", tick: int, path: Path) -> None:
     from sandbox.app.share.evidence import Shown, write_sides
-    from sandbox.session.replay.divergence import differing_particle
+    from sandbox.session.compare.divergence import differing_particle
 
     shown = []
-    for letter, side, other, run in zip("AB", sides, sides[::-1], (found.left, found.right), strict=True):
+    for letter, side, other, run in zip("AB", sides, sides[::-1], (found.expected, found.actual), strict=True):
         run = run or side.begin(other)
         while run.tick < tick:
             run.advance()

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand, WindowOptions
+from sandbox.cli.base.command import Subcommand, WindowOptions, optional_argument
 from sandbox.cli.base.inputs import Refused
-from sandbox.cli.base.options import optional_argument
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, flag, option, option_or, optional_argument
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of, recording_of
-from sandbox.cli.base.options import flag, option, option_or, optional_argument
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
@@ -52,7 +51,7 @@ def export(options: ExportOptions) -> int:
 
 def _commands(name: str) -> str:
     """The commands of a recording, also of another physics version. Raises Refused."""
-    from sandbox.session.replay.text import commands_text
+    from sandbox.session.replay.recording import commands_text
 
     return commands_text(recording_of(name, retold=True))
 

@@ -4,9 +4,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument
 from sandbox.cli.base.inputs import EXIT_OK, Refused
-from sandbox.cli.base.options import argument
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,14 +5,13 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand, length_in_seconds, length_in_ticks
+from sandbox.cli.base.command import Subcommand, arguments, flag, length_in_seconds, length_in_ticks
 from sandbox.cli.base.inputs import EXIT_OK, Refused, is_replay, level_of
-from sandbox.cli.base.options import arguments, flag
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
-    from sandbox.session.events.happening import Happening
+    from sandbox.session.event_log import Event
     from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
 
@@ -59,11 +58,10 @@ def _recording(name: str) -> "Replay":
 
 def _told(
     options: InfoOptions, name: str, level: "Level", replay: "Replay | None"
-) -> "tuple[Session, int, list[Happening]]":
+) -> "tuple[Session, int, list[Event]]":
     """The run at its end, the tick of that, and what happened in it, one by one where a program asks."""
     from sandbox.session.commands import CommandError
-    from sandbox.session.events.story import happenings, watched_story
-    from sandbox.session.events.touch_watch import TouchWatch
+    from sandbox.session.event_log import TouchWatch, events_of, watched_event_log
     from sandbox.session.session import Session
 
     rate = level.settings.tick_rate
@@ -78,10 +76,10 @@ def _told(
             look_up()
 
         try:
-            found = watched_story(run, ticks, on_tick, watch)
+            found = watched_event_log(run, ticks, on_tick, watch)
         except CommandError as error:
             raise Refused(*(f"{name}: tick {run.tick}: {fault}" for fault in error.faults)) from None
-    return run, ticks, happenings(run, watch) if options.json else found
+    return run, ticks, events_of(run, watch) if options.json else found
 
 
 def _header(name: str, run: "Session", replay: "Replay | None", ticks: int) -> list[str]:
@@ -105,8 +103,8 @@ def _header(name: str, run: "Session", replay: "Replay | None", ticks: int) -> l
     return lines
 
 
-def _list(options: InfoOptions, run: "Session", found: "list[Happening]") -> list[str]:
-    from sandbox.session.events.happening import shortened
+def _list(options: InfoOptions, run: "Session", found: "list[Event]") -> list[str]:
+    from sandbox.session.event_log import shortened
 
     left, dropped = (found, 0) if options.all else shortened(found)
     rate = run.level.settings.tick_rate
@@ -116,7 +114,7 @@ def _list(options: InfoOptions, run: "Session", found: "list[Happening]") -> lis
     return ["happened", *lines]
 
 
-def _data(name: str, run: "Session", replay: "Replay | None", found: "list[Happening]") -> dict[str, Any]:
+def _data(name: str, run: "Session", replay: "Replay | None", found: "list[Event]") -> dict[str, Any]:
     from sandbox.session.outcome import outcome, outcome_data
 
     settings, rate = run.level.settings, run.level.settings.tick_rate

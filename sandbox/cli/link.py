@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, option_or
 from sandbox.cli.base.inputs import EXIT_OK, Refused, recording_of
-from sandbox.cli.base.options import argument, option_or
 from sandbox.terminal import seconds
 
 

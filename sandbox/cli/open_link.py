@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand, WindowOptions
+from sandbox.cli.base.command import Subcommand, WindowOptions, argument
 from sandbox.cli.base.inputs import Refused
-from sandbox.cli.base.options import argument
 from sandbox.cli.play import PlayOptions, play
 
 
@@ -17,7 +16,7 @@ class OpenOptions(WindowOptions):
 
 def open_link(options: OpenOptions) -> int:
     """Open the app with the run of a link. Raises Refused."""
-    from sandbox.session.link.scene_link import is_link
+    from sandbox.session.replay.link import is_link
 
     if not is_link(options.link):
         raise Refused(

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, needed_option
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_or_replay
-from sandbox.cli.base.options import argument, needed_option
-from sandbox.cli.base.pages import PAGE
+from sandbox.cli.base.running import PAGE
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.base.command import Subcommand, WindowOptions
+from sandbox.cli.base.command import Subcommand, WindowOptions, flag, option, optional_argument
 from sandbox.cli.base.inputs import EXIT_OK, level_or_replay
-from sandbox.cli.base.options import flag, option, optional_argument
 from sandbox.cli.base.running import run_with_bar
 from sandbox.terminal import seconds
 

@@ -5,11 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, needed_option, option
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_or_replay
-from sandbox.cli.base.options import argument, needed_option, option
-from sandbox.cli.base.pages import write_run
-from sandbox.cli.base.running import run_with_bar
+from sandbox.cli.base.running import run_with_bar, write_run
 from sandbox.terminal import Progress, rate, seconds, size
 
 if TYPE_CHECKING:

@@ -11,18 +11,17 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
-from sandbox.cli.base.options import arguments, flag, option
-from sandbox.cli.base.pages import PAGE, write_report
+from sandbox.cli.base.running import PAGE, write_report
 from sandbox.terminal import Progress, cores, count, processes, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.physics.world import World
-    from sandbox.session.replay.divergence import Divergence
+    from sandbox.session.compare.comparison import Comparison
+    from sandbox.session.compare.divergence import Divergence
     from sandbox.session.replay.recording import Replay
-    from sandbox.session.replay.verify import Comparison
 
 # A process that verifies recordings takes as long to start as some recordings take; fewer are not worth one.
 FILES_PER_PROCESS = 8
@@ -81,7 +80,7 @@ def verify_files(options: ReplayOptions) -> int:
 
 def _recordings(names: Sequence[str]) -> list[str]:
     """The files that are named, and those in the folders that are. Raises Refused."""
-    from sandbox.session.replay.names import RECORDINGS, recordings_in
+    from sandbox.session.replay import RECORDINGS, recordings_in
 
     found: list[str] = []
     for name in names:
@@ -121,8 +120,8 @@ def _verified(name: str, options: ReplayOptions, shows: bool = False) -> Verifie
 
 def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
     """Verify a recording. Raises Refused and ReplayError."""
-    from sandbox.session.replay.rollback import roll_back
-    from sandbox.session.replay.verify import compare
+    from sandbox.session.compare.comparison import compare
+    from sandbox.session.compare.rollback import roll_back
 
     level = level_of(options.against) if options.against else None
     replay = recording_of(name, options.partial)
@@ -161,17 +160,18 @@ def _equal(name: str, replay: "Replay", level: "Level", end: "World | None", rol
 
 
 def _diverged(name: str, found: "Comparison", options: ReplayOptions, shows: bool) -> Verified:
-    from sandbox.session.replay.verify import to_the_end
+    from sandbox.session.compare.comparison import to_the_end
 
     text, more = f"diverged at {found.divergence}", {}
     if options.to_end:
         with _progress(found.replay, shows) as bar:
             found = to_the_end(found, _onward(bar))
-        text = "\n  ".join([text, *found.edits, *([*found.apart.told(), found.apart.verdict()] if found.apart else [])])
+        distance = [*found.distance.lines_of_all(), found.distance.verdict()] if found.distance else []
+        text = "\n  ".join([text, *found.edits, *distance])
     if options.report is not None:
         write_report(found, options.report)
-    if found.apart:
-        more = {"apart": {**asdict(found.apart), "verdict": found.apart.verdict()}}
+    if found.distance:
+        more = {"apart": {**asdict(found.distance), "verdict": found.distance.verdict()}}
     return _failed(name, found.divergence, text, **more)
 
 

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand, length_in_seconds, length_in_ticks
+from sandbox.cli.base.command import Subcommand, argument, length_in_seconds, length_in_ticks
 from sandbox.cli.base.inputs import EXIT_OK, Refused, recording_of
-from sandbox.cli.base.options import argument
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 
@@ -21,7 +20,7 @@ def resume_file(options: ResumeOptions) -> int:
     """Make a recording whole. Raises Refused."""
     from sandbox.session.commands import CommandError
     from sandbox.session.replay.recording import ReplayError
-    from sandbox.session.replay.resume import resume
+    from sandbox.session.replay.rerecord import resume
 
     try:
         whole = recording_of(options.file)

@@ -8,9 +8,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand, length_in_seconds, length_in_ticks
+from sandbox.cli.base.command import Subcommand, argument, flag, length_in_seconds, length_in_ticks, option, option_or
 from sandbox.cli.base.inputs import EXIT_OK, EXIT_REFUSED, Refused, level_of
-from sandbox.cli.base.options import argument, flag, option, option_or
 from sandbox.cli.base.running import run_with_bar
 from sandbox.terminal import count, substeps, tell
 
@@ -136,8 +135,8 @@ def _scripted_session(level: "Level", commands: Path | None, ticks: int) -> "Ses
 
     if commands is None:
         return Session(level)
+    from sandbox.session.replay.reader import read_script
     from sandbox.session.replay.recording import ReplayError
-    from sandbox.session.replay.script import read_script
 
     try:
         script = read_script(commands)

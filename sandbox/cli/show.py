@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument
 from sandbox.cli.base.inputs import EXIT_OK, recording_of
-from sandbox.cli.base.options import argument
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +15,7 @@ class ShowOptions:
 
 def show(options: ShowOptions) -> int:
     """Print a recording as text. Raises Refused."""
-    from sandbox.session.replay.text import recording_text
+    from sandbox.session.replay.recording import recording_text
 
     print(recording_text(recording_of(options.file, partial=True, retold=True)), end="")
     return EXIT_OK

@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, flag, option
 from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of, recording_of
-from sandbox.cli.base.options import argument, flag, option
 from sandbox.terminal import Progress, cores, processes
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.session.replay.recording import Replay
-    from sandbox.session.shrink.failure import Failure
+    from sandbox.session.shrink.failures import Failure
     from sandbox.session.shrink.shrinker import Shrinker
 
 RECORDING = ".replay.gz"
@@ -53,7 +52,7 @@ class ShrinkOptions:
 
 def shrink(options: ShrinkOptions) -> int:
     """Make a failing recording as small as it gets."""
-    from sandbox.session.shrink.failure import FailureError
+    from sandbox.session.shrink.failures import FailureError
     from sandbox.session.shrink.shrinker import shrinker_of
 
     replay = recording_of(options.file, partial=True)
@@ -81,8 +80,16 @@ def shrink(options: ShrinkOptions) -> int:
 
 def _failure(options: ShrinkOptions, replay: "Replay") -> "tuple[Failure, Level | None]":
     """What fails, and the level to run on in place of the recorded one. Raises Refused."""
-    from sandbox.session.shrink.diverging import Diverges
-    from sandbox.session.shrink.kinds import AnyOf, CheckFails, Crashes, EnergyGrows, Freezes, IsLost, usual_failures
+    from sandbox.session.shrink.failures import (
+        AnyOf,
+        CheckFails,
+        Crashes,
+        Diverges,
+        EnergyGrows,
+        Freezes,
+        IsLost,
+        usual_failures,
+    )
 
     level = level_of(options.against) if options.against else None
     chosen: list[Failure] = []
@@ -110,7 +117,7 @@ def _failure(options: ShrinkOptions, replay: "Replay") -> "tuple[Failure, Level 
 
 
 def _leaving(text: str) -> "Failure":
-    from sandbox.session.shrink.kinds import Leaves
+    from sandbox.session.shrink.failures import Leaves
 
     if text == "view":
         return Leaves()
@@ -124,9 +131,9 @@ def _leaving(text: str) -> "Failure":
 def _nothing(name: str, replay: "Replay", failure: "Failure", level: "Level") -> list[str]:
     """Why there is nothing to shrink."""
     from sandbox.level.checks import window_of
+    from sandbox.session.compare.comparison import verify
     from sandbox.session.replay.recording import ReplayError
-    from sandbox.session.replay.verify import verify
-    from sandbox.session.shrink.kinds import AnyOf, CheckFails
+    from sandbox.session.shrink.failures import AnyOf, CheckFails
 
     looked = failure.failures if isinstance(failure, AnyOf) else (failure,)
     lines = [f"{name}: nothing to shrink: in {replay.ticks} ticks this does not come: {failure}"]
@@ -170,8 +177,8 @@ def _work(shrinker: "Shrinker", options: ShrinkOptions) -> bool:
 
 def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", output: Path) -> tuple[list[Path], str]:
     """Write the recording and its test; these, and which level the test runs on."""
-    from sandbox.session.shrink.diverging import Diverges
-    from sandbox.session.shrink.writing import seen_from, test_text, write_recording
+    from sandbox.session.shrink.failures import Diverges
+    from sandbox.session.shrink.shrinker import seen_from, test_text, write_recording
 
     assert shrinker.seen is not None
     failure = shrinker.seen.failure
@@ -190,7 +197,7 @@ def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", 
 def _present_level(shrinker: "Shrinker") -> Path | None:
     """The level file in `levels` that has the title of the recorded one, and in which it still fails."""
     from sandbox.level.reading.files import LevelError, read_level
-    from sandbox.session.shrink.failure import FailureError
+    from sandbox.session.shrink.failures import FailureError
     from sandbox.session.shrink.shrinker import Shrinker
 
     assert shrinker.seen is not None
@@ -215,7 +222,7 @@ def _identifier(name: str) -> str:
 
 
 def _lines(shrinker: "Shrinker", options: ShrinkOptions, took: float, stopped: bool) -> list[str]:
-    from sandbox.session.shrink.play import counted, short_json
+    from sandbox.session.shrink.passes import counted, short_json
 
     assert shrinker.seen is not None
     more = len(shrinker.smallest.lines) - MOST_SHOWN

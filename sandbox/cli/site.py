@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, arguments, needed_option, option, option_or
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
-from sandbox.cli.base.options import arguments, needed_option, option, option_or
 from sandbox.terminal import Progress
 
 

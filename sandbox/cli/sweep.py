@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.command import Subcommand, argument, flag, needed_option, option, option_or, repeated_option
 from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
-from sandbox.cli.base.options import argument, flag, needed_option, option, option_or, repeated_option
 from sandbox.terminal import Progress, cores, processes, seconds, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
-    from sandbox.session.sweep.grid import SweepGrid, Value
-    from sandbox.session.sweep.table import Rows
+    from sandbox.session.sweep.grid import Rows, SweepGrid, Value
 
 SWEEP_SECONDS = 10.0
 MOST_RUNS = 100_000
@@ -124,8 +122,7 @@ def _panels(grid: "SweepGrid", options: SweepOptions) -> list[str]:
 
 def _known(table: Path, grid: "SweepGrid", is_beside: bool) -> "Rows | None":
     """The rows of a table that holds this very sweep; is_beside: it is not what was named. Raises Refused."""
-    from sandbox.session.sweep.grid import SweepError
-    from sandbox.session.sweep.table import read_table
+    from sandbox.session.sweep.grid import SweepError, read_table
 
     if not table.is_file():
         return None
@@ -142,7 +139,7 @@ def _known(table: Path, grid: "SweepGrid", is_beside: bool) -> "Rows | None":
 
 def _run(table: Path, grid: "SweepGrid", options: SweepOptions) -> "Rows | None":
     """Run what is not known yet and write the table; its rows, None where it was interrupted. Raises SweepError."""
-    from sandbox.session.sweep.journal import Journal
+    from sandbox.session.sweep.grid import Journal
 
     journal = Journal(table, grid, options.fresh)
     if journal.replaced:
@@ -165,10 +162,10 @@ def _run(table: Path, grid: "SweepGrid", options: SweepOptions) -> "Rows | None"
 def _rows(grid: "SweepGrid", known: "Rows", options: SweepOptions) -> Generator[tuple[int, list[Any]], None, None]:
     workers = min(options.processes or cores(), grid.runs)
     if options.dask:
-        from sandbox.session.sweep.cluster import swept_by_dask
+        from sandbox.session.sweep.running import swept_by_dask
 
         return swept_by_dask(grid, list(known), options.dask, workers)
-    from sandbox.session.sweep.pool import swept
+    from sandbox.session.sweep.running import swept
 
     return swept(grid, list(known), workers)
 

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.base.command import LookOptions, Subcommand
+from sandbox.cli.base.command import LookOptions, Subcommand, option, optional_argument
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
-from sandbox.cli.base.options import option, optional_argument
 from sandbox.terminal import seconds, tell
 
 if TYPE_CHECKING:

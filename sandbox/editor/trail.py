@@ -14,7 +14,7 @@ from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.slices import work_for
 from sandbox.level.document.model import Level
-from sandbox.session.held_keys import HeldKeys
+from sandbox.session.check_run import HeldKeys
 from sandbox.session.session import Session
 
 Floats = NDArray[np.float64]

@@ -7,9 +7,9 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import replaced
 from sandbox.session.check_run import checks_as_they_end
+from sandbox.session.compare.comparison import verify
 from sandbox.session.level_edits import Edit, edited, level_edits, with_value
 from sandbox.session.replay.recording import Replay, ReplayError
-from sandbox.session.replay.verify import verify
 
 # Halvings of an interval of values that are not whole, at most, and the part of it that is near enough.
 MOST_HALVINGS, NEAR = 40, 1e-6

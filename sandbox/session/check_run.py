@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from sandbox.level.checks import STILL, CheckDef, CheckResult, HoldDef, excess, judge, window_of
 from sandbox.level.document.model import Level
+from sandbox.level.plan.actuators import driving_keys
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.geometry.elementary import sum_in_order
 from sandbox.physics.world import World
-from sandbox.session.held_keys import HeldKeys
+from sandbox.session.commands import SetDrive
 from sandbox.session.session import Session
 from sandbox.session.summary import STRAIN_WINDOW, particle_metric, strain_sample
 
@@ -38,6 +39,30 @@ def checks_as_they_end(level: Level) -> Iterator[tuple[int, CheckResult] | None]
                     break
                 run.advance()
             yield None
+
+
+class HeldKeys:
+    """Presses and releases keys at their ticks; of several that drive one part, the one pressed last counts."""
+
+    def __init__(self, level: Level, holds: Sequence[HoldDef]) -> None:
+        rate, keys = level.settings.tick_rate, driving_keys(level) if holds else {}
+        spans = [(round(hold.during[0] * rate), round(hold.during[1] * rate), hold.key) for hold in holds]
+        self._values: dict[int, dict[int, float]] = {}
+        held: dict[int, float] = {}
+        for tick in sorted({edge for start, end, _ in spans for edge in (start, end)}):
+            pressed = sorted(
+                (start, number, key) for number, (start, end, key) in enumerate(spans) if start <= tick < end
+            )
+            now = {part: value for _, _, key in pressed for part, value in keys[key]}
+            changed = {
+                part: now.get(part, 0.0) for part in {**held, **now} if held.get(part, 0.0) != now.get(part, 0.0)
+            }
+            self._values[tick], held = changed, now
+
+    def press(self, session: Session) -> None:
+        """Drive what is due before a session's next tick."""
+        for part, value in self._values.get(session.tick, {}).items():
+            session.submit(SetDrive(part, value))
 
 
 class CheckRun:
@@ -242,6 +267,15 @@ class _Gauge:
         return self._still[check.body] / world.settings.tick_rate
 
 
+def _of_body(
+    known: dict[str | None, NDArray[np.bool_]], names: list[str], body: str | None, sign: str
+) -> NDArray[np.bool_]:
+    """Which of these slots are a body's; all of them where it is None. What is known of other times is looked up."""
+    if body not in known or len(known[body]) != len(names):
+        known[body] = np.array([body is None or name.startswith(f"{body}{sign}") for name in names], dtype=np.bool_)
+    return known[body]
+
+
 _VALUES: dict[str, Callable[[_Gauge, World, CheckDef], float]] = {
     "max_strain": _Gauge._max_strain,
     "rms_strain": _Gauge._rms_strain,
@@ -259,12 +293,3 @@ _VALUES: dict[str, Callable[[_Gauge, World, CheckDef], float]] = {
     "inside": _Gauge._inside,
     "settled": _Gauge._settled,
 }
-
-
-def _of_body(
-    known: dict[str | None, NDArray[np.bool_]], names: list[str], body: str | None, sign: str
-) -> NDArray[np.bool_]:
-    """Which of these slots are a body's; all of them where it is None. What is known of other times is looked up."""
-    if body not in known or len(known[body]) != len(names):
-        known[body] = np.array([body is None or name.startswith(f"{body}{sign}") for name in names], dtype=np.bool_)
-    return known[body]

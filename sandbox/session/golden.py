@@ -24,8 +24,7 @@ from sandbox.session.check_run import run_checks
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.faults import plain_fault
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.script import read_script
+from sandbox.session.replay.reader import read_replay, read_script
 from sandbox.session.session import Session
 
 SUFFIX = ".golden.json"

@@ -14,16 +14,13 @@ from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
 from sandbox.session.actions import RuleActions
-from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
-from sandbox.session.events.moments import note_moment
-from sandbox.session.keyframes import Keyframe, Keyframes
-from sandbox.session.log import Branch, LogEntry
+from sandbox.session.log import Branch, LogEntry, break_lines, note_tick_events
 from sandbox.session.replay.format import STATE_TICKS
-from sandbox.session.replay.writer import Recorder
-from sandbox.session.run_history import RunHistory
+from sandbox.session.replay.recording import Recorder
+from sandbox.session.run_history import Keyframe, Keyframes, RunHistory
 from sandbox.session.transaction import Interrupted, all_or_nothing
 
 # Ticks between two calls of `progress` while re-stepping: few, as a tick of a full world takes a tenth of a second.
@@ -151,6 +148,17 @@ class Session:
         applied = self._apply(command, self.new_gesture() if gesture is None else gesture)
         self.history.scripted = None
         return applied
+
+    def attempt(self, record: dict[str, Any], gesture: int) -> bool:
+        """Carry a command of a script out before the next tick; whether that was possible."""
+        refusals = len(self.refusals)
+        try:
+            command = from_record(record, self.world)
+        except CommandError:
+            return False
+        self.submit(command, gesture)
+        self.apply_pending()
+        return len(self.refusals) == refusals
 
     def undo(self) -> None:
         """Queue the undoing of the last gesture."""
@@ -308,7 +316,7 @@ class Session:
     @property
     def breaks(self) -> tuple[int, ...]:
         """The ticks in which springs broke, in order."""
-        return tuple(sorted(tick for tick, moment in self.history.moments.items() if moment.broken))
+        return tuple(sorted(tick for tick, kept in self.history.tick_events.items() if kept.broken))
 
     @property
     def gestures(self) -> tuple[LogEntry, ...]:
@@ -544,7 +552,7 @@ class Session:
         if self.level.rules:
             self._actions.act(self.world)
         step(self.world)
-        note_moment(self.history.moments, self.world)
+        note_tick_events(self.history.tick_events, self.world)
         self.history.keyframes.note_tick(self.world, order)
 
     def _report_progress(self, done: int, total: int) -> None:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
+    from sandbox.session.compare.comparison import Comparison
     from sandbox.session.player.page import PlayerPage
-    from sandbox.session.replay.verify import Comparison
     from sandbox.session.session import Session
 
 # Of how many failures there are pictures: of none, of the first few of a process, of all.
@@ -38,7 +38,7 @@ def pictures_of(config: pytest.Config, found: "Comparison", path: Path) -> list[
         write_motion(found, target)
 
     def player(target: Path) -> None:
-        from sandbox.session.player.report import report_page
+        from sandbox.session.player.page import report_page
 
         report_page(found).write(target)
 
@@ -77,8 +77,7 @@ def runs_of(config: pytest.Config, test: str, runs: Iterable["Session"], told: s
 
 
 def _page_of(recording: Path, title: str, lines: Sequence[str]) -> "PlayerPage":
-    from sandbox.session.player.page import PlayerPage
-    from sandbox.session.player.report import command_marks, played
+    from sandbox.session.player.page import PlayerPage, command_marks, played
     from sandbox.session.replay.reader import read_replay
     from sandbox.session.session import Session
 

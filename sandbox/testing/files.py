@@ -14,8 +14,14 @@ USUAL_LEVELS = ["levels/*.json"]
 LEVEL_FORMAT = "spring-sandbox/level"
 # A level file is no longer [bytes], see docs/level-format.md.
 LONGEST = 8 * 2**20
-
 _LEVELS = pytest.StashKey[frozenset[Path]]()
+
+
+class Failed(Exception):
+    """Why a test fails, a line each; shown without a traceback."""
+
+    def __init__(self, *lines: str) -> None:
+        super().__init__("\n".join(lines))
 
 
 def is_golden(path: Path) -> bool:

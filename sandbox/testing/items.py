@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.failed import Failed
-from sandbox.testing.files import check_names, has_solution, marks_of, says_it_is_a_level
-
-# Told where a file does not even say that it is a level.
-ELSEWHERE = "it lies where levels lie; if it is something else, keep it elsewhere, or name levels by sandbox_levels"
+from sandbox.testing.files import Failed, check_names, has_solution, marks_of, says_it_is_a_level
 
 if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
     from sandbox.level.document.model import Level
+
+# Told where a file does not even say that it is a level.
+ELSEWHERE = "it lies where levels lie; if it is something else, keep it elsewhere, or name levels by sandbox_levels"
 
 
 class ToldItem(pytest.Item):
@@ -99,7 +98,7 @@ class LevelItem(ToldItem):
     def runtest(self) -> None:
         """Run it. Raises Failed."""
         from sandbox.level.assembly.build_world import build_world
-        from sandbox.testing.smaller import check_rollback_of_level
+        from sandbox.testing.replaying import check_rollback_of_level
 
         assert isinstance(self.parent, LevelTests)
         try:
@@ -132,7 +131,7 @@ class GoalItem(ToldItem):
 
     def runtest(self) -> None:
         """Run it. Raises Failed."""
-        from sandbox.session.solution import try_goal
+        from sandbox.session.checking import try_goal
 
         assert isinstance(self.parent, LevelTests)
         result = try_goal(self.parent.level(), self.path)
@@ -140,3 +139,41 @@ class GoalItem(ToldItem):
             raise Failed("no rule of the level wins, but a solution lies beside it")
         if not result.passed:
             raise Failed(f"goal {result.text}")
+
+
+class GoldenTest(pytest.File):
+    """A golden file, which is one test."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """The test."""
+        yield GoldenItem.from_parent(self, name="golden")
+
+
+class GoldenItem(ToldItem):
+    """What a golden file holds comes out again, within its tolerances."""
+
+    mark = "golden"
+
+    def runtest(self) -> None:
+        """Run it. Raises Failed."""
+        from sandbox.level.format.level_error import LevelError
+        from sandbox.session.golden import GoldenError, differences, read_golden, write_golden
+        from sandbox.session.replay.recording import ReplayError
+        from sandbox.testing.replaying import Update, with_solver
+
+        try:
+            golden = read_golden(self.path)
+            measured = golden.measured(with_solver(self.config, golden.level))
+        except (GoldenError, LevelError, ReplayError) as error:
+            raise Failed(*error.faults) from None
+        found = differences(golden.file, measured)
+        if not found:
+            return
+        if not self.config.getoption("--replay-update"):
+            raise Failed(*(f"{self.path.name}: {line}" for line in found), "to accept: pytest --replay-update")
+        try:
+            write_golden(self.path, measured)
+        except OSError as error:
+            raise Failed(f"{self.path}: cannot be written: {error.strerror or error}") from None
+        update = Update(self.path.name, [f"{self.path.name}: {line}" for line in found], "recorded as it is now")
+        self.user_properties.append(("sandbox_updated", update.to_text()))

@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.session.replay.names import is_recording
+from sandbox.session.replay import is_recording
 from sandbox.testing.evidence import CHOICES, FIRST, runs_of
 from sandbox.testing.files import USUAL_LEVELS, given_renames, is_golden, is_level, level_files, marked
-from sandbox.testing.goldens import GoldenTest
-from sandbox.testing.items import LevelTests, RecordingTest
-from sandbox.testing.updates import grouped
+from sandbox.testing.items import GoldenTest, LevelTests, RecordingTest
 
 if TYPE_CHECKING:
     from sandbox.testing.driver import Driver, LevelLike, SandboxSession
@@ -160,6 +158,8 @@ _updated: list[str] = []
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Show what was recorded again."""
     if _updated:
+        from sandbox.testing.replaying import grouped
+
         terminalreporter.section("recorded again")
         for line in grouped(_updated):
             terminalreporter.write_line(line)

@@ -1,34 +1,66 @@
 """What the test of a recording does: run it again, tell and draw where it parts, or record it again."""
 
 import functools
+import json
 import os
 import shlex
 import tempfile
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import LevelError, file_of, read_level, shipped_levels
+from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
-from sandbox.session.replay.renames import Renames, carried_over, guessed_renames, missing_names, new_names
-from sandbox.session.replay.rerecord import record_again, with_settings
-from sandbox.session.replay.verify import Comparison, across_versions, compare, to_the_end
+from sandbox.session.replay.rerecord import (
+    Renames,
+    carried_over,
+    guessed_renames,
+    missing_names,
+    new_names,
+    record_again,
+    with_settings,
+)
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.failed import Failed
-from sandbox.testing.files import given_renames, level_files
-from sandbox.testing.smaller import check_rollback, shrunk_lines
-from sandbox.testing.updates import Update, update_of
+from sandbox.testing.files import Failed, given_renames, level_files
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sandbox.level.document.model import Level
+    from sandbox.session.compare.comparison import Comparison
+    from sandbox.session.replay.recording import Replay
 
 # In place of a level: the copy that each recording has of its own.
 OWN = "own"
-
 # Names that are told of those that a level does not have, and of those that are new there.
 MOST_NAMED = 5
+# Smaller runs that the test of one recording tries, at most.
+MOST_RUNS = 2_000
+# Recordings that are named below one cause.
+RECORDINGS_NAMED = 12
+
+
+@dataclass(frozen=True)
+class Update:
+    """A recording that was recorded again. cause: lines; effect: a line; farthest [m]: how far its runs are apart."""
+
+    name: str
+    cause: list[str]
+    effect: str
+    farthest: float = 0.0
+    checks: list[str] = field(default_factory=list)
+
+    def to_text(self) -> str:
+        """It as a line of JSON, which processes hand on."""
+        return json.dumps(asdict(self))
 
 
 def replay_test(config: pytest.Config, path: Path) -> Update | None:
@@ -152,14 +184,6 @@ def _acceptance(config: pytest.Config, path: Path) -> str:
     return f"to accept: {shlex.join(['pytest', '--replay-update', *options, str(name)])}"
 
 
-def level_of(path: Path) -> Level:
-    """A level. Raises Failed with its faults."""
-    try:
-        return _read_level(path, path.stat().st_mtime_ns if path.is_file() else 0)
-    except LevelError as error:
-        raise Failed(*error.faults) from None
-
-
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
     """The level on which a recording runs instead of its own copy: one file, or its file in a folder.
 
@@ -239,6 +263,14 @@ def _read_level(path: Path, changed: int) -> Level:
     return read_level(path)
 
 
+def level_of(path: Path) -> Level:
+    """A level. Raises Failed with its faults."""
+    try:
+        return _read_level(path, path.stat().st_mtime_ns if path.is_file() else 0)
+    except LevelError as error:
+        raise Failed(*error.faults) from None
+
+
 def with_solver(config: pytest.Config, level: Level) -> Level:
     """A level with the solver of --replay-solver, where that is given. Raises Failed."""
     solver = config.getoption("--replay-solver")
@@ -275,3 +307,92 @@ def _update(golden: _Golden) -> Update | None:
     finally:
         fresh.unlink(missing_ok=True)
     return update_of(path.name, golden.recorded, moved, found)
+
+
+def shrunk_lines(
+    config: pytest.Config, replay: "Replay", level: "Level | None", output: "Callable[[], Path]"
+) -> list[str]:
+    """The smallest run that still diverges on a level, as lines, and written; none where nobody asks for it.
+
+    output: where what is written of the recording goes.
+    """
+    if not config.getoption("--replay-shrink"):
+        return []
+    if level is None:
+        return ["smallest: only the build that recorded it knows the bits of other commands; --replay-against compares "
+                "with a level"]  # fmt: skip
+    from sandbox.session.shrink.failures import Diverges
+    from sandbox.session.shrink.passes import short_json
+    from sandbox.session.shrink.shrinker import shrinker_of, write_recording
+
+    shrinker = shrinker_of(replay, Diverges(level))
+    if shrinker.seen is None:
+        return ["smallest: what differs does so from the beginning, without any command"]
+    for _ in shrinker.steps():
+        if shrinker.tries >= MOST_RUNS:
+            break
+    try:
+        path = Path(f"{str(output()).partition('.replay')[0]}.smallest.replay.gz")
+        write_recording(shrinker.smallest, shrinker.level, path)
+    except OSError as error:
+        return [f"smallest: {error}"]
+    return [
+        f"smallest: {path}: {shrinker.smallest.counts()}: {shrinker.seen}",
+        *(f"  tick {line.tick}: {short_json(line.record)}" for line in shrinker.smallest.lines),
+    ]
+
+
+def check_rollback(config: pytest.Config, replay: "Replay", level: "Level | None") -> None:
+    """Go back at every tick of a recording, where --replay-rollback says so. Raises Failed and ReplayError."""
+    from sandbox.session.compare.rollback import roll_back
+
+    back = config.getoption("--replay-rollback")
+    found = roll_back(replay, back, level).found if back else None
+    if found is not None:
+        raise Failed(f"{Path(replay.source).name}: rolled back {back} ticks, diverged: {found}", *found.lines())
+
+
+def check_rollback_of_level(config: pytest.Config, level: "Level") -> None:
+    """The same of a level that random hands play. Raises Failed."""
+    from sandbox.session.compare.rollback import roll_back_level
+
+    back = config.getoption("--replay-rollback")
+    found = roll_back_level(level, back).found if back else None
+    if found is not None:
+        raise Failed(f"{level.name}: rolled back {back} ticks under random hands, diverged: {found}", *found.lines())
+
+
+def update_of(name: str, recorded: "Replay", moved: list[str], found: "Comparison | None") -> Update:
+    """What to tell of a recording that was recorded again."""
+    old = [] if recorded.is_of_this_physics else [f"recorded with physics version {recorded.physics_version}"]
+    cause = [*old, *moved]
+    if found is None:
+        return Update(name, cause, "equal in every bit")
+    if found.edits:
+        cause += found.edits
+    elif recorded.is_of_this_physics:
+        cause.append(str(found.by_hand) if found.by_hand else f"this build steps differently: {found.divergence.array}")
+    if found.distance is None:
+        return Update(name, cause, str(found.divergence))
+    return Update(name, cause, str(found.distance), found.distance.farthest, list(found.distance.lines))
+
+
+def grouped(texts: Iterable[str]) -> list[str]:
+    """The lines of all updates, given as JSON: each cause once, with the largest effect, and the recordings."""
+    groups: dict[tuple[str, ...], list[Update]] = defaultdict(list)
+    for text in texts:
+        update = Update(**json.loads(text))
+        groups[tuple(update.cause)].append(update)
+    lines = []
+    for cause, updates in groups.items():
+        most = max(updates, key=lambda each: each.farthest)
+        names = sorted(each.name for each in updates)
+        more = f" and {len(names) - RECORDINGS_NAMED} more" if len(names) > MOST_NAMED else ""
+        of = f" ({most.name})" if len(names) > 1 and most.farthest else ""
+        lines += [
+            *cause,
+            f"  {most.effect}{of}",
+            *(f"  {line}{of}" for line in most.checks),
+            f"  {len(names)} recording{'s' if len(names) > 1 else ''}: {', '.join(names[:RECORDINGS_NAMED])}{more}",
+        ]
+    return lines

@@ -15,9 +15,9 @@ import numpy as np
 
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay
-from sandbox.session.replay.verify import verify
 from tests.determinism.golden import SHORTER, golden_names, golden_path
 from tests.support.limits import Limits
 

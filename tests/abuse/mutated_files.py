@@ -15,10 +15,9 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
-from sandbox.session.replay.reader import read_replay
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.reader import read_replay, read_script
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.script import read_script
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.limits import Limits
 from tests.support.malformed_replays import compressed, sealed

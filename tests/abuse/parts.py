@@ -14,8 +14,8 @@ from collections import Counter
 from pathlib import Path
 
 from sandbox.physics.solvers import SOLVERS
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.parts import RandomPlayer, furnished
 

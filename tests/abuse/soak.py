@@ -34,8 +34,8 @@ from sandbox.app.window.app import App
 from sandbox.editor.items import items_of
 from sandbox.editor.storage.part_files import catalogue
 from sandbox.level.reading.files import load_level
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.support.person import VirtualScreen
 
 FRAME = 1 / 60

@@ -238,7 +238,7 @@ class Driver:
 def documents(tmp_path, monkeypatch):
     """The person's documents, empty, and a data folder of their own."""
     monkeypatch.setattr(
-        "sandbox.editor.storage.data_folder.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
+        "sandbox.editor.storage.preferences.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
     )
     monkeypatch.setattr("sandbox.app.base.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
     monkeypatch.setattr(

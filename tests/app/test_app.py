@@ -18,8 +18,8 @@ from sandbox.app.widgets.scroll import BAR_WIDTH
 from sandbox.app.window.opening import open_app
 from sandbox.editor.storage.preferences import preference
 from sandbox.level.reading.files import shipped_levels
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.app.conftest import small_level
 
 DISPLAY_NAMES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
@@ -155,7 +155,7 @@ def test_a_recording_on_a_full_disk_is_refused_in_plain_words_and_leaves_no_file
     def full(recorder, world):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("sandbox.session.replay.writer.Recorder.write_tick", full)
+    monkeypatch.setattr("sandbox.session.replay.recording.Recorder.write_tick", full)
     for key, mods in ((pygame.K_r, CTRL), (pygame.K_s, CTRL | pygame.KMOD_SHIFT)):
         driver.key(key, mods)
         path = documents / "small.replay.jsonl"

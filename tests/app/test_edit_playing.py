@@ -11,8 +11,8 @@ from sandbox.level.document.model import WallsDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import write_level
 from sandbox.session.commands import CutSprings, SetCoefficients
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT

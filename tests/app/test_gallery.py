@@ -7,7 +7,7 @@ import pygame
 import pytest
 
 from sandbox.app.base.recordings import chosen_path, free_path, plain_name
-from sandbox.editor.storage.recent import remember
+from sandbox.editor.storage.preferences import remember
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay

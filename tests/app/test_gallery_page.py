@@ -13,7 +13,7 @@ def gallery_driver(tmp_path_factory):
     """The app on its gallery, shared by what only looks."""
     with pytest.MonkeyPatch.context() as patch:
         folder = tmp_path_factory.mktemp("gallery")
-        patch.setattr("sandbox.editor.storage.data_folder.platformdirs.user_data_dir", lambda *_, **__: str(folder))
+        patch.setattr("sandbox.editor.storage.preferences.platformdirs.user_data_dir", lambda *_, **__: str(folder))
         driver = Driver()
         yield driver
         driver.app.close()

@@ -8,12 +8,12 @@ import pytest
 
 from sandbox.app.play.goals.score import Chip, chips_of, told_time
 from sandbox.editor.storage.best_runs import best_recording, best_result
-from sandbox.editor.storage.recent import remember
+from sandbox.editor.storage.preferences import remember
 from sandbox.level.reading.files import parse_level
 from sandbox.session.commands import SetGravity
+from sandbox.session.compare.comparison import verify
 from sandbox.session.outcome import outcome
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.app.conftest import small_level
 

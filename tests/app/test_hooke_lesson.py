@@ -7,9 +7,8 @@ import pygame
 import pytest
 
 from sandbox.app.compare.compare_screen import CompareScreen
-from sandbox.app.compare.hooke_lesson import HookeLesson, has_exploded
+from sandbox.app.compare.hooke_lesson import MASSES, RATES, SPRINGS, HookeLesson, has_exploded
 from sandbox.app.compare.hooke_level import CD, MOST_DOUBLINGS, SpringTrial, lesson_level, words
-from sandbox.app.compare.lesson_panel import MASSES, RATES, SPRINGS
 from sandbox.app.draw.colours import LINE
 from sandbox.session.session import Session
 

@@ -6,7 +6,7 @@ import pytest
 from sandbox.editor.storage.scene_shelf import kept_scenes
 from sandbox.level.reading.files import load_level
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.replay.scene_file import read_scene
+from sandbox.session.scene import read_scene
 from tests.app.conftest import Driver
 from tests.support.scene_player import ScenePlayer, first_level, unreachable
 
@@ -174,7 +174,7 @@ def test_saving_again_goes_on_in_the_same_file_only_while_it_is_the_same_run(toy
     toy.key(pygame.K_s, CTRL)
     toy.key(pygame.K_RETURN)
     assert sorted(path.name for path in documents.iterdir()) == ["Desk toy-2.scene.jsonl", "Desk toy.scene.jsonl"]
-    assert read_scene(documents / "Desk toy.scene.jsonl")[0].deeds == "2 things added"
+    assert read_scene(documents / "Desk toy.scene.jsonl")[0].actions == "2 things added"
 
 
 def test_a_saved_scene_can_be_discarded_at_once(toy, documents):

@@ -7,8 +7,8 @@ from sandbox.app.base import desktop
 from sandbox.app.share.link_copying import so_far
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings
-from sandbox.session.link.scene_link import replay_of
-from sandbox.session.replay.verify import verify
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.link import replay_of
 from tests.app.conftest import small_level
 
 

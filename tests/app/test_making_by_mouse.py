@@ -168,4 +168,4 @@ def test_a_saved_scene_has_what_was_made_and_goes_on_from_there(player, tmp_path
     scene = player.playback.present_scene()
     again = scene.session()
     assert state_hash(again.world) == state_hash(player.world) and again.world.joined
-    assert CutSprings not in map(type, commands(player)) and scene.deeds == "2 things added"
+    assert CutSprings not in map(type, commands(player)) and scene.actions == "2 things added"

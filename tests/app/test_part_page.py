@@ -6,8 +6,8 @@ import pytest
 from sandbox.app.parts.part_card import SMALL_TEXT
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.editor.storage.part_files import keep_part
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.app.test_palette import at, commands, drop
 from tests.editor.test_joining import BAR, part

@@ -10,7 +10,7 @@ from sandbox.app.draw import picture_cache
 from sandbox.app.draw.colours import THEME_NAMES
 from sandbox.app.draw.picture_cache import kept_picture, picture_key, read_picture, shipped_picture, stale_pictures
 from sandbox.app.gallery import gallery
-from sandbox.editor.storage.recent import remember
+from sandbox.editor.storage.preferences import remember
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import shipped_levels
 from tests.app.conftest import small_level

@@ -27,8 +27,8 @@ from sandbox.app.share.movie import MovieWriter
 from sandbox.app.share.sharing import Sharing
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import SetCoefficients
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.app.conftest import small_level
 from tests.page.packed import data_of

@@ -6,8 +6,8 @@ import pytest
 from sandbox.app.base.loop import BACKWARD_SPEEDS, TickClock
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Grab, Pin, SetGravity
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.app.conftest import small_level
 
 SHIFT, CTRL = pygame.KMOD_SHIFT, pygame.KMOD_CTRL

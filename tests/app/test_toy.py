@@ -16,8 +16,8 @@ from sandbox.app.toy.toy import Toy
 from sandbox.app.toy.toy_window import SIDE, ToyWindow
 from sandbox.cli import main
 from sandbox.editor.storage.preferences import preference, preferences_file, set_preference
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.app.conftest import small_level
 
 FRAME = 1 / 30

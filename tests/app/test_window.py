@@ -6,8 +6,8 @@ import pytest
 
 from sandbox.app.base.display import WINDOW_SIZE
 from sandbox.level.reading.files import write_level
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.app.conftest import Driver, small_level
 from tests.support.person import DEADLINE, Person, needs_a_screen

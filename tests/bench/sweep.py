@@ -12,7 +12,7 @@ import numpy as np
 
 from sandbox.level.reading.files import load_level
 from sandbox.session.sweep.grid import SweepGrid
-from sandbox.session.sweep.pool import swept
+from sandbox.session.sweep.running import swept
 
 SIDE, SECONDS = 20, 10.0
 

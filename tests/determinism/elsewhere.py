@@ -222,8 +222,8 @@ def watched(images: list[Image]) -> Iterator[Callable[[], None]]:
 
 def verified(name: str, machine: Machine, end: int | None) -> str:
     """A golden, verified here to a tick while another machine makes the same calls: what it found."""
+    from sandbox.session.compare.comparison import verify
     from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.verify import verify
     from tests.determinism.golden import golden_path
 
     images, said, calls, ticks = [Image(machine)], [], 0, 0

@@ -27,8 +27,8 @@ VERSIONS = "import platform, numpy; print(platform.python_version(), numpy.__ver
 def verified(names: list[str]) -> int:
     """Run goldens in this process; how many differ."""
     from sandbox.physics.jit import COMPILED, way
+    from sandbox.session.compare.comparison import verify
     from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.verify import verify
     from tests.determinism.golden import golden_names, golden_path
 
     differing = ticks = 0

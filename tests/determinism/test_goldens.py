@@ -10,8 +10,8 @@ import pytest
 
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.determinism.golden import FOLDER, LONG, SHORTER, golden_commands, golden_names, golden_path
 
 SIZE_LIMIT, SHORT_SIZE_LIMIT = 5_700_000, 1_150_000  # [bytes] of all goldens together, and of those that are short

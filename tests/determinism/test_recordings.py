@@ -14,9 +14,9 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.play import play
 

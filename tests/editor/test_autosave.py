@@ -9,6 +9,7 @@ from itertools import pairwise
 import pytest
 
 from sandbox.editor.storage import autosave as module
+from sandbox.editor.storage import background_writer
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.level.reading.files import parse_level, read_level, shipped_levels
@@ -134,7 +135,7 @@ def test_an_orphan_stays_while_only_what_was_noted_before_it_is_written(autosave
         assert may_end.wait(10)
         write_file(*given)
 
-    monkeypatch.setattr(module, "_PAUSES", (0.0, 0.0))
+    monkeypatch.setattr(background_writer, "_PAUSES", (0.0, 0.0))
     monkeypatch.setattr(module, "write_file", slow)
     autosave.note(named("before"), None, "Open")
     assert begun.wait(10)
@@ -150,7 +151,7 @@ def full(*_):
 
 
 def test_a_folder_that_cannot_be_written_is_told_until_it_can(autosave, folder, monkeypatch):
-    monkeypatch.setattr(module, "_PAUSES", (0.0, 0.0))
+    monkeypatch.setattr(background_writer, "_PAUSES", (0.0, 0.0))
     with monkeypatch.context() as patched:
         patched.setattr(module, "write_file", full)
         autosave.note(named("first"), None, "Open")
@@ -158,13 +159,13 @@ def test_a_folder_that_cannot_be_written_is_told_until_it_can(autosave, folder, 
         line = f"The work cannot be kept in {folder}: no space left on device. Save it yourself."
         assert autosave.fault == line
         assert list(folder.glob("*.autosave")) == []
-    with autosave._changed:
-        assert autosave._changed.wait_for(lambda: autosave.fault is None, 30)
+    with autosave._writer._changed:
+        assert autosave._writer._changed.wait_for(lambda: autosave.fault is None, 30)
     assert len(list(folder.glob("*.autosave"))) == 1
 
 
 def test_noting_returns_while_the_disk_is_slow_and_only_the_newest_waits(autosave, folder, monkeypatch):
-    monkeypatch.setattr(module, "_PAUSES", (0.0, 0.0))
+    monkeypatch.setattr(background_writer, "_PAUSES", (0.0, 0.0))
     real, go, written = module.write_file, threading.Event(), []
 
     def slow(path, data):

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.editor.storage import recent
-from sandbox.editor.storage.recent import RECENT_COUNT, recent_levels, remember
+from sandbox.editor.storage import preferences
+from sandbox.editor.storage.preferences import RECENT_COUNT, recent_levels, remember
 
 
 def made(folder, *names):
@@ -64,7 +64,7 @@ def test_where_nothing_can_be_written_nothing_happens(tmp_path):
 
 
 def test_the_list_is_the_person_s_own_unless_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(recent, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(preferences, "data_folder", lambda: tmp_path)
     (path,) = made(tmp_path, "a.json")
     remember(os.fspath(path))
     assert recent_levels() == [Path(path)]

@@ -7,7 +7,7 @@ import platform
 
 import pytest
 
-from sandbox.editor.storage import data_folder
+from sandbox.editor.storage import preferences
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
 from sandbox.level.reading.files import LevelError, read_level, write_level
@@ -247,6 +247,6 @@ def test_names_that_no_system_takes_are_refused_in_a_line(data, tmp_path, name):
 
 
 def test_the_data_folder_is_the_person_s_own(monkeypatch, tmp_path):
-    monkeypatch.setattr(data_folder.platformdirs, "user_data_dir", lambda name, appauthor: str(tmp_path / name))
-    assert data_folder.data_folder() == tmp_path / "spring-sandbox"
+    monkeypatch.setattr(preferences.platformdirs, "user_data_dir", lambda name, appauthor: str(tmp_path / name))
+    assert preferences.data_folder() == tmp_path / "spring-sandbox"
     assert LevelFile().folder == tmp_path / "spring-sandbox"

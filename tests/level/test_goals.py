@@ -4,9 +4,9 @@ import pytest
 
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
+from sandbox.session.checking import has_goal, solution_of, try_goal
 from sandbox.session.outcome import outcome
 from sandbox.session.session import Session
-from sandbox.session.solution import has_goal, solution_of, try_goal
 from tests.solutions import SOLUTIONS
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")

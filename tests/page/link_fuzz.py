@@ -35,9 +35,9 @@ from sandbox.session.commands import (
     SetDrive,
 )
 from sandbox.session.commands.records import script_of
-from sandbox.session.link.scene_link import MARK, level_record, replay_of, run_of
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.link import MARK, level_record, replay_of, run_of
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.page.in_node import NODE
 from tests.session.test_kits import DEFINITIONS

@@ -4,7 +4,7 @@ import pytest
 
 from sandbox import load_level
 from sandbox.physics.step import PHYSICS_VERSION
-from sandbox.session.link.scene_link import level_record
+from sandbox.session.replay.link import level_record
 from tests.page.in_node import NODE
 from tests.page.link_fuzz import fragment_of, in_node, on_the_desktop, tried
 

@@ -8,7 +8,7 @@ import pytest
 
 from sandbox.app.share.playing import page_of
 from sandbox.cli import main
-from sandbox.session.link.scene_link import MARK
+from sandbox.session.replay.link import MARK
 from tests.page.browser import Browser, Tab, page_address
 from tests.page.levels import level_page
 from tests.page.opened import FRAMES, START_OVER, VERDICT, opened

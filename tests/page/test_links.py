@@ -26,8 +26,8 @@ from sandbox.commands import (
 )
 from sandbox.level.kinds.jelly import Jelly, JellyDef
 from sandbox.replay import Replay, read_replay
-from sandbox.session.link.scene_link import fragment_of, replay_of
-from sandbox.session.replay.verify import verify
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.link import fragment_of, replay_of
 from sandbox.tools.dropping import PARTS
 from tests.page.browser import Browser, Tab
 from tests.page.opened import FRAMES, VERDICT

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.replay import Replay, read_replay, verify
-from sandbox.session.link.scene_link import replay_of
+from sandbox.session.replay.link import replay_of
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import STANDS, START_OVER, opened, saved

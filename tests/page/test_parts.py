@@ -10,7 +10,7 @@ from sandbox import load_level
 from sandbox.app.share.stuffs import parts_for
 from sandbox.editor.storage.part_files import catalogue
 from sandbox.replay import Replay, read_replay, verify
-from sandbox.session.link.scene_link import replay_of
+from sandbox.session.replay.link import replay_of
 from sandbox.tools.dropping import PARTS
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page

@@ -14,7 +14,7 @@ from sandbox.app.draw.picture import draw_picture, view_of
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import read_level
 from sandbox.level.reference import anchor
-from sandbox.session.held_keys import HeldKeys
+from sandbox.session.check_run import HeldKeys
 from sandbox.session.session import Session
 from tests.pictures.photographer import DOCS, ROOT
 

@@ -4,7 +4,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.physics.snapshot import state_hash, take
 from sandbox.physics.step import step
 from sandbox.session.commands import CutSprings, Grab, MoveGrab, Pin, Release, SetCoefficients
-from sandbox.session.keyframes import KEYFRAME_TICKS, Keyframe, Keyframes
+from sandbox.session.run_history import KEYFRAME_TICKS, Keyframe, Keyframes
 from sandbox.session.session import Session
 from tests.session.test_breaks_and_drives import busy_level
 from tests.support.rope_level import rope_level

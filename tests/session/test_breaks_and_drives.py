@@ -9,9 +9,8 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, CutSprings, Grab, MoveGrab, SetAir, SetDrive, SetInflation, apply
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.script import read_script
-from sandbox.session.replay.verify import verify
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.reader import read_replay, read_script
 from sandbox.session.session import Session
 from sandbox.session.summary import run
 

@@ -8,9 +8,9 @@ from sandbox.cli import main
 from sandbox.level.reading.files import level_data, parse_level
 from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value
 from sandbox.session.commands import CutSprings, Pin
+from sandbox.session.compare.comparison import ComparedRun, difference
+from sandbox.session.compare.divergence import Divergence
 from sandbox.session.level_edits import edits_between, level_edits, with_value
-from sandbox.session.replay.difference import ComparedRun, difference
-from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
@@ -49,7 +49,7 @@ def test_two_recordings_part_at_their_first_command_and_the_first_bit_after_it(p
     assert found.commands[0] == "command 2 differs"
     assert "rope:3" in found.commands[1] and "rope:4" in found.commands[2]
     assert found.divergence.tick == 21 and found.divergence.expected != found.divergence.actual
-    assert [run.tick for run in (found.left, found.right)] == [21, 21]
+    assert [run.tick for run in (found.expected, found.actual)] == [21, 21]
     lines = found.lines()
     assert float.fromhex(lines[-1].split()[-1]) == found.divergence.actual
     assert difference(side(pair[0]), side(pair[0]), 10**6).is_equal

@@ -9,8 +9,8 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, Free, Pin, Undo, apply
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.overlaps import overlaps
 from tests.support.physics_scenes import scaled

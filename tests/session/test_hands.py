@@ -11,8 +11,8 @@ from sandbox.level.rules.hands import DEEDS, MEANINGS
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import COMMAND_TYPES, AddParticle, CommandError, CutSprings, Grab, Pin, SetGravity, Unpin
 from sandbox.session.commands.records import ScriptLine
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 
 LEVEL = {

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from sandbox.session.compare.comparison import verify
 
 from sandbox.cli import main
 from sandbox.physics.marks import ALL_GROUPS
@@ -24,7 +25,6 @@ from sandbox.session.commands import (
 )
 from sandbox.session.probe import Probe, dump
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.parts import BODIES, SKIN, RandomPlayer, furnished, placed, placed_cart, room
 

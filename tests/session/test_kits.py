@@ -9,8 +9,8 @@ from sandbox.level.assembly.joining import Joiners
 from sandbox.level.assembly.kit_files import written
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, CommandError, Remove, SetDrive, SetFirmness, SetInflation, apply
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.parts import BODIES, SKIN, furnished, placed, placed_cart, room
 

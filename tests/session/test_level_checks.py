@@ -9,11 +9,10 @@ from sandbox.level.checks import METRICS, HoldDef, Metric, promise_text
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import parse_level
-from sandbox.session.check_run import checks_as_they_end, run_checks
-from sandbox.session.held_keys import HeldKeys
+from sandbox.session.check_run import HeldKeys, checks_as_they_end, run_checks
 from sandbox.session.session import Session
-from sandbox.session.sweep.case import run_case
 from sandbox.session.sweep.grid import SweepRequest
+from sandbox.session.sweep.running import run_case
 
 # A ball falls 4 m onto the ground in 0.9 s; a rope of two springs hangs beside it, of which the lower one is slack.
 LEVEL = {

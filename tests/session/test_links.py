@@ -9,11 +9,10 @@ import pytest
 
 from sandbox.level.reading.files import load_level
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.link.packing import PackingError, pack, unpack
-from sandbox.session.link.scene_link import LONGEST, MARK, fragment_of, is_link, replay_of
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.link import LONGEST, MARK, PackingError, fragment_of, is_link, pack, replay_of, unpack
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.verify import verify
 from tests.determinism.golden import golden_names, golden_path
 from tests.determinism.seeds.player import recording
 

@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 
 from sandbox.cli import main
-from sandbox.session.replay.reader import read_replay
+from sandbox.session.compare.comparison import verify
+from sandbox.session.replay.reader import read_replay, read_script
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.script import read_script
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.malformed_replays import bad_commands, cases, compressed, sealed
 from tests.support.play import play

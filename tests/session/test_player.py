@@ -8,11 +8,19 @@ import numpy as np
 
 from sandbox.level.reading.files import load_level
 from sandbox.session.commands import AddParticle, CutSprings
-from sandbox.session.player.page import PlayerPage
-from sandbox.session.player.reel import NOWHERE, STEPS, Reel, shown_box, steps_between
-from sandbox.session.player.report import report_page, told_of, watches_of
+from sandbox.session.compare.comparison import compare
+from sandbox.session.player.page import (
+    NOWHERE,
+    STEPS,
+    PlaybackData,
+    PlayerPage,
+    report_page,
+    shown_box,
+    steps_between,
+    told_of,
+    watches_of,
+)
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import compare
 from sandbox.session.session import Session
 from tests.support.player_page import TICKS, rope_page
 from tests.support.rope_level import rope_level
@@ -44,7 +52,7 @@ def test_a_page_holds_every_picture_of_both_runs_where_they_are():
 def test_what_is_far_away_or_no_number_is_nowhere_and_what_joins_is_there():
     level = rope_level()
     run = Session(level)
-    reel = Reel("run", level, shown_box(level, run.world))
+    reel = PlaybackData("run", level, shown_box(level, run.world))
     reel.add(run.world)
     run.submit(AddParticle((1.0, 1.0)))
     run.advance()

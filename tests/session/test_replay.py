@@ -10,9 +10,9 @@ import pytest
 from sandbox.physics.state import BY_STORED, FAMILIES, OF_RULES, Family
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
+from sandbox.session.compare.comparison import Divergence, verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.verify import Divergence, verify
 from sandbox.session.session import Session
 from tests.support.play import play
 from tests.support.rope_level import rope_level

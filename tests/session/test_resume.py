@@ -3,10 +3,10 @@ import pytest
 from sandbox.cli import main
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Grab, MoveGrab
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.resume import resume
-from sandbox.session.replay.verify import verify
+from sandbox.session.replay.rerecord import resume
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 
@@ -57,7 +57,7 @@ def test_it_is_made_whole_by_the_command_line_which_refuses_what_is_whole_or_lon
 def test_what_runs_otherwise_now_is_refused_and_nothing_is_changed(crashed, monkeypatch):
     path, _ = crashed
     cut, data = read_replay(path, partial=True), path.read_bytes()
-    monkeypatch.setattr("sandbox.session.replay.resume.state_hash", lambda world: "0" * 32)
+    monkeypatch.setattr("sandbox.session.replay.rerecord.state_hash", lambda world: "0" * 32)
     with pytest.raises(ReplayError, match="the run differs at tick 1,"):
         resume(cut, 200)
     assert path.read_bytes() == data and len(list(path.parent.iterdir())) == 1

@@ -11,8 +11,8 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.step import step
 from sandbox.session.commands import Grab, Push
+from sandbox.session.compare.rollback import roll_back, roll_back_level
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.rollback import roll_back, roll_back_level
 from sandbox.session.session import Session
 from tests.support.play import play
 from tests.support.rope_level import rope_level

@@ -16,11 +16,10 @@ from sandbox.session.commands import (
     SetFirmness,
     SetGravity,
 )
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.scene_file import read_about, read_scene, scene_lines
-from sandbox.session.replay.verify import verify
-from sandbox.session.scene import SceneTaker
+from sandbox.session.scene import SceneTaker, read_about, read_scene, scene_lines
 from sandbox.session.session import Session
 
 JELLY = {
@@ -141,14 +140,14 @@ def test_a_scene_follows_the_scene_that_it_went_on_from_and_no_other():
     advanced(session, 5)
     later = taker.take()
     assert later.follows(first) and first.follows(first) and not first.follows(later)
-    assert later.deeds == "2 things added, 1 cut, 4 deeds"
+    assert later.actions == "2 things added, 1 cut, 4 deeds"
 
 
 def test_the_first_line_of_a_scene_says_what_it_is_of(tmp_path):
     session = played("rope_bridge_jelly")
     through_file(session, tmp_path / "kept")
     about = read_about(tmp_path / "kept")
-    assert (about.name, about.deeds) == (session.level.name, "2 things added, 1 cut, 3 deeds")
+    assert (about.name, about.actions) == (session.level.name, "2 things added, 1 cut, 3 deeds")
 
 
 @pytest.mark.parametrize("line", [0, 1, 5, -2, -1])

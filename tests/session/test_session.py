@@ -371,7 +371,7 @@ def test_hands_cannot_be_grabbed_pinned_or_cut(session):
 
 
 def test_keyframes_are_thinned_within_their_budget_and_undo_still_works(session, monkeypatch):
-    monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_BUDGET", 40_000)
+    monkeypatch.setattr("sandbox.session.run_history.KEYFRAME_BUDGET", 40_000)
     session.submit(Pin(3))
     _advance(session, 1500)
     assert len(session.history.keyframes) < 15

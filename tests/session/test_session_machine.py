@@ -41,9 +41,9 @@ from sandbox.session.commands import (
     Unpin,
     apply,
 )
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from sandbox.session.transaction import Interrupted
 from tests.support.rope_level import rope_level
@@ -353,9 +353,9 @@ class SessionMachine(RuleBasedStateMachine):
 @pytest.fixture(autouse=True)
 def short_intervals(monkeypatch):
     """Keyframes and stored states every few ticks, and few of them kept, so that short runs meet them."""
-    monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_TICKS", 5)
-    monkeypatch.setattr("sandbox.session.keyframes.KEYFRAME_BUDGET", 25_000)
-    monkeypatch.setattr("sandbox.session.replay.writer.STATE_TICKS", 7)
+    monkeypatch.setattr("sandbox.session.run_history.KEYFRAME_TICKS", 5)
+    monkeypatch.setattr("sandbox.session.run_history.KEYFRAME_BUDGET", 25_000)
+    monkeypatch.setattr("sandbox.session.replay.format.STATE_TICKS", 7)
     monkeypatch.setattr("sandbox.session.session.PROGRESS_TICKS", 1)
 
 

@@ -7,8 +7,8 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import CommandError, Shake, apply
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.parts import BODIES, RandomPlayer, furnished, placed, room
 

@@ -26,9 +26,9 @@ from sandbox.replay import (
 )
 from sandbox.session.commands import Grab, MoveGrab, Pin, Push, Release, SetGravity
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.random_hands import RandomHands
+from sandbox.session.compare.rollback import RandomHands
 from sandbox.session.session import Session
-from sandbox.session.shrink.play import Play
+from sandbox.session.shrink.passes import Play
 from sandbox.session.shrink.shrinker import Shrinker, shrinker_of
 from tests.support.interrupts import interrupts
 from tests.support.planted import CASES, edited

@@ -6,8 +6,8 @@ import pytest
 
 from sandbox.cli import main
 from sandbox.level.document.canonical import level_text
+from sandbox.session.checking import solution_of, try_goal
 from sandbox.session.session import Session
-from sandbox.session.solution import solution_of, try_goal
 from tests.support import rules_level
 
 pytest_plugins = ["pytester"]

@@ -7,9 +7,9 @@ from sandbox.app.run.playback import Playback
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.commands import AddParticle, CutSprings, Grab, MoveGrab, Pin, Release, Unpin
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.format import decode_state
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 

@@ -10,17 +10,13 @@ import signal
 import numpy as np
 import pytest
 
-import sandbox.session.sweep.pool as pool
+import sandbox.session.sweep.running as pool
 from sandbox.cli import main
 from sandbox.level.reading.files import level_data
 from sandbox.session.level_edits import field_place
-from sandbox.session.sweep.case import run_case
-from sandbox.session.sweep.cluster import swept_by_dask
-from sandbox.session.sweep.grid import SweepError, SweepGrid
-from sandbox.session.sweep.journal import Journal
-from sandbox.session.sweep.pool import swept
+from sandbox.session.sweep.grid import Journal, SweepError, SweepGrid, read_table, table_text
+from sandbox.session.sweep.running import run_case, swept, swept_by_dask
 from sandbox.session.sweep.sweep_map import edges, is_logarithmic, sweep_panels
-from sandbox.session.sweep.table import read_table, table_text
 from tests.support.rope_level import rope_level
 
 CHECKS = [{"name": "stays up", "metric": "y", "particle": "rope.end", "after": 0.1, "at_least": -0.2}]

@@ -9,8 +9,8 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import BY_STORED, FAMILIES, Family
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive, apply
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 
 FLOOR = {"id": "floor", "polyline": [[-9, 0], [9, 0]]}

@@ -9,8 +9,8 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, CutSprings, Remove, Undo
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.pools import free, jelly, lift_over_weight, pool
 

@@ -9,11 +9,9 @@ from typing import Any
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import level_data, load_level, parse_level
 from sandbox.session.commands.records import from_record
-from sandbox.session.random_hands import RandomHands
+from sandbox.session.compare.rollback import RandomHands
 from sandbox.session.session import Session
-from sandbox.session.shrink.diverging import Diverges
-from sandbox.session.shrink.failure import Failure
-from sandbox.session.shrink.kinds import CheckFails, Freezes, Leaves
+from sandbox.session.shrink.failures import CheckFails, Diverges, Failure, Freezes, Leaves
 
 SECONDS = 60.0
 # Hands of gestures that are planted: random ones have 0.

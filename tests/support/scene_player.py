@@ -10,7 +10,7 @@ import pygame
 from sandbox.editor.storage.scene_shelf import kept_scenes, scenes_in
 from sandbox.level.reading.files import load_level, shipped_folder
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.replay.scene_file import read_scene
+from sandbox.session.scene import read_scene
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 LEVELS = ("desk_toy", "rope", "newtons_cradle", "jelly_cube")

@@ -12,11 +12,11 @@ from sandbox.cli import main
 from sandbox.level.reading.files import level_data
 from sandbox.physics.snapshot import restore
 from sandbox.session.commands import Grab, Pin, Release
+from sandbox.session.compare.comparison import compare, to_the_end
+from sandbox.session.compare.distance import distance_in_step, metres
 from sandbox.session.level_edits import with_value
-from sandbox.session.replay.apart import apart_in_step, metres
 from sandbox.session.replay.format import seal
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import compare, to_the_end
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 
@@ -97,9 +97,9 @@ def test_an_edited_level_is_told_by_its_field_its_distance_and_what_accepts_it(p
             level=with_value(with_value(BASE, "materials.steel.stiffness", 0.6), "settings.gravity", [0.0, -14.0]),
         )
     )
-    assert found.apart.farthest > 0.05 and found.apart.tick > 20
-    most = f"at most {metres(found.apart.farthest)} apart, {found.apart.particle} at tick {found.apart.tick}; "
-    assert most + f"{metres(found.apart.end)} at the end, tick {TICKS}\n" in told
+    assert found.distance.farthest > 0.05 and found.distance.tick > 20
+    most = f"at most {metres(found.distance.farthest)} apart, {found.distance.particle} at tick {found.distance.tick}; "
+    assert most + f"{metres(found.distance.end)} at the end, tick {TICKS}\n" in told
     assert "checks in this run: 1 of 2 hold as before\nheld before: it is slow: FAILS: max_speed" in told
     assert "to accept: pytest --replay-update pull.replay.jsonl\n" in told
     # The picture is of the tick at which they are farthest apart: its halves differ.
@@ -109,7 +109,7 @@ def test_an_edited_level_is_told_by_its_field_its_distance_and_what_accepts_it(p
     changed = ImageChops.difference(*halves).getbbox()
     assert changed is not None and changed[2] - changed[0] > 60
     page = (project.path / "out" / "pull.replay.jsonl.html").read_text()
-    assert f'"first":{found.apart.tick},' in page
+    assert f'"first":{found.distance.tick},' in page
     assert project("pull.replay.jsonl", "--replay-update")[0] == 0
     assert project("pull.replay.jsonl")[0] == 0
 
@@ -189,6 +189,6 @@ def test_a_difference_that_heals_is_told_as_one(tmp_path):
         if actual.tick == 10:
             restore(actual.world, expected.snapshot())
 
-    found = apart_in_step(expected, actual, replay.ticks, progress=lambda done, total: heal())
+    found = distance_in_step(expected, actual, replay.ticks, progress=lambda done, total: heal())
     assert found.first == 0 and found.heals is not None and found.end == 0.0
     assert found.verdict().startswith(f"it heals: from tick {found.heals} on no particle is elsewhere")

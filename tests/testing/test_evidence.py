@@ -12,8 +12,8 @@ import sandbox.app.share.evidence
 import sandbox.session.worker_pool  # noqa: F401
 from sandbox.cli import main
 from sandbox.level.reading.files import level_data
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from tests.support.rope_level import rope_level
 from tests.testing import test_plugin as plugin_tests
 from tests.testing.test_plugin import CHECKS, LOADED

@@ -9,8 +9,8 @@ import pytest
 from sandbox.cli import main
 from sandbox.level.reading.files import file_of, level_data, load_level, write_level
 from sandbox.session.commands import CutSprings, Grab, Pin, Release
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 from tests.testing.test_edited_levels import LOADED, resealed

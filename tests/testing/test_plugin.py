@@ -15,9 +15,9 @@ from sandbox.app.draw.picture import draw_picture
 from sandbox.level.reading.files import level_data, read_level
 from sandbox.physics.step import step
 from sandbox.session.commands import Pin
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.format import encode_state, seal
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 

@@ -14,8 +14,8 @@ from sandbox.physics.meshing.fitting import CROSSES, TOO_SMALL
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, AddParticle, AddSpring, CommandError
 from sandbox.session.commands.records import from_record, to_record
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.scene import SceneTaker
 from sandbox.session.session import Session
 from sandbox.tools.axle import NOTHING_THERE, TOO_FEW, AxleTool

@@ -9,9 +9,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pygame
 
+from sandbox.app.draw.colours import LINE, ThemeName
+from sandbox.app.draw.picture import draw_picture
 from sandbox.level.document.model import Level
 from sandbox.level.reading.parse import parse_level
+from sandbox.session.session import Session
 
 # The spring that both begin with: k [N/m] and c [N s/m] of a weight of 1 kg at 60 ticks a second, as Cs and Cd.
 FIRST_K, C = 225.0, 3.0
@@ -19,6 +23,8 @@ FIRST_CS, CD = 0.0625, 0.05
 MOST_DOUBLINGS = 14
 # Rest length of all springs together [m], and how far the last weight is drawn away at first.
 LENGTH, DRAWN = 1.6, 0.5
+# Drawn in this size [pixels] for each side, what it shows [m], and how thick lines are.
+SIZE, BOX, LINE_SCALE = (320, 360), (-1.4, -3.1, 2.0, 0.6), 1.6
 
 
 @dataclass(frozen=True)
@@ -53,6 +59,9 @@ class SpringTrial:
     def are_equal(self) -> bool:
         """Whether both springs are one and the same in this trial."""
         return self.mass == 1.0 and self.rate == 60 and FIRST_CS * 2.0**self.doublings <= 1.0 and self.springs == 1
+
+
+SIDES = ((SpringTrial(), False), (SpringTrial(doublings=2), True))
 
 
 def lesson_level(trial: SpringTrial, is_hooke: bool) -> Level:
@@ -110,3 +119,24 @@ def words(trial: SpringTrial, exploded_at: int | None) -> str:
         f"The same k is another spring now: {weight}, {trial.rate} ticks a second. The most that Hooke's takes has "
         f"become {limit} N/m. Cs means the same as before, and ends at 1 as before. Make them stiffer."
     )
+
+
+def lesson_picture(size: tuple[int, int], theme: ThemeName) -> pygame.Surface:
+    """Both sides beside each other in a size [pixels] and a theme."""
+    whole = pygame.Surface((2 * SIZE[0], SIZE[1]), 0, 32)
+    for k, (trial, is_hooke) in enumerate(SIDES):
+        level = lesson_level(trial, is_hooke)
+        whole.blit(draw_picture(level, Session(level).snapshot(), SIZE, BOX, LINE_SCALE, theme), (k * SIZE[0], 0))
+    pygame.draw.line(whole, LINE, (SIZE[0], 0), (SIZE[0], SIZE[1]), 4)
+    return pygame.transform.smoothscale(whole, size)
+
+
+def twice(picture: pygame.Surface) -> pygame.Surface:
+    """The middle of a picture twice beside itself, in the same size."""
+    width, height = picture.get_size()
+    whole = picture.copy()
+    middle = pygame.Rect(width // 4, 0, width - width // 2, height)
+    for left in (0, width // 2):
+        whole.blit(picture, (left, 0), middle)
+    pygame.draw.line(whole, LINE, (width // 2, 0), (width // 2, height), 2)
+    return whole

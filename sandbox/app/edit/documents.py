@@ -16,7 +16,7 @@ from sandbox.editor.document import UNTITLED, Document, empty_level, new_level
 from sandbox.editor.history import History
 from sandbox.editor.storage.autosave import Autosave, Orphan, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
-from sandbox.editor.storage.recent import remember
+from sandbox.editor.storage.preferences import remember
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced

@@ -12,7 +12,7 @@ import pygame
 from sandbox.app.base.recordings import recordings_folder, saved_recordings
 from sandbox.app.base.shortcuts import hint
 from sandbox.app.base.slice_queue import SliceQueue
-from sandbox.app.compare.lesson_picture import lesson_picture, twice
+from sandbox.app.compare.hooke_level import lesson_picture, twice
 from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import TEXT, shown_theme
 from sandbox.app.draw.picture_cache import (
@@ -34,12 +34,12 @@ from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.best_runs import best_result
-from sandbox.editor.storage.recent import played_levels, recent_levels
+from sandbox.editor.storage.preferences import played_levels, recent_levels
 from sandbox.editor.storage.scene_shelf import scenes_in
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, shipped_levels
 from sandbox.physics import jit
-from sandbox.session.replay.scene_file import SUFFIX
+from sandbox.session.scene import SUFFIX
 
 # Sizes in layout units.
 LEAST_WIDTH, MOST_WIDTH = 218.0, 420.0

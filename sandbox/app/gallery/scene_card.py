@@ -14,7 +14,7 @@ from sandbox.app.gallery.card import Card
 from sandbox.editor.document import UNTITLED
 from sandbox.level.plan.surfaces import terrain_of
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.scene_file import SUFFIX, read_about, read_scene
+from sandbox.session.scene import SUFFIX, read_about, read_scene
 
 # What the place is called that New begins with.
 NEW_PLACE = "New place"
@@ -32,9 +32,9 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
         return
     when, level = told_time(about.when), about.name if about.name != UNTITLED else NEW_PLACE
     name = level if is_kept else path.name.removesuffix(SUFFIX)
-    card.line = f"{when}, {about.deeds}" if is_kept else f"Scene, {when}"
-    text = f"{level}, as it stood {when}: {about.deeds}."
-    card.show_texts(f"{level}, {when}, {about.deeds}" if card.is_small else name, text, ("scene",))
+    card.line = f"{when}, {about.actions}" if is_kept else f"Scene, {when}"
+    text = f"{level}, as it stood {when}: {about.actions}."
+    card.show_texts(f"{level}, {when}, {about.actions}" if card.is_small else name, text, ("scene",))
     yield True
     key, theme = picture_key(end), shown_theme()
     picture = find_picture(path, key, card.picture_size, theme)

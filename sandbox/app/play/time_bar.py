@@ -93,8 +93,8 @@ class TimeBar:
             self._app.rebuild()
             return
         session, travel = playback.session, playback.travel
-        moments = session.history.moments
-        events = len(moments), next(reversed(moments), None)
+        kept = session.history.tick_events
+        events = len(kept), next(reversed(kept), None)
         state = (playback.revision, len(session.gestures), events, tuple(travel.bookmarks), session.branches)
         if self._marks[0] != state:
             self._marks = state, travel.marks()

@@ -20,7 +20,6 @@ from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.step import precompute
-from sandbox.session.breaks import break_lines
 from sandbox.session.commands import (
     Command,
     CommandError,
@@ -31,7 +30,7 @@ from sandbox.session.commands import (
     SetInflation,
     Undo,
 )
-from sandbox.session.log import Branch
+from sandbox.session.log import Branch, break_lines
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.scene import RunScene, SceneTaker
 from sandbox.session.session import Session

@@ -5,9 +5,7 @@ import itertools
 from dataclasses import dataclass
 
 from sandbox.session.commands.records import script_of
-from sandbox.session.events.deeds import deeds_in
-from sandbox.session.events.happening import listed
-from sandbox.session.events.story import told_moments
+from sandbox.session.event_log import listed, tick_events_of, user_actions
 from sandbox.session.log import LogEntry
 from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Session
@@ -64,7 +62,7 @@ class Travel:
         session = self._session
         commands = [Mark(entry.tick, "command", self._deed(entry)) for entry in session.gestures]
         breaks = []
-        told = list(told_moments(session, session.last_tick))
+        told = list(tick_events_of(session, session.last_tick))
         for tick, those in itertools.groupby((each for each in told if each.kind == "break"), lambda each: each.tick):
             broken = list(those)
             things = listed(each.names[0] for each in broken)
@@ -78,7 +76,7 @@ class Travel:
     def _deed(self, entry: LogEntry) -> str:
         """What a command did, in words."""
         if entry.order not in self._deeds:
-            told = next(deeds_in(script_of([entry], self._session.world)), None)
+            told = next(user_actions(script_of([entry], self._session.world)), None)
             self._deeds[entry.order] = entry.command.type.replace("_", " ") if told is None else told.text
         return self._deeds[entry.order]
 

@@ -14,11 +14,10 @@ from sandbox.app.film.kinds import require
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, take
-from sandbox.session.player.reel import told_states
-from sandbox.session.replay.apart import metres, recorded_world
-from sandbox.session.replay.divergence import differing_particle, number_text
-from sandbox.session.replay.format import decode_state
-from sandbox.session.replay.verify import Comparison
+from sandbox.session.compare.comparison import Comparison
+from sandbox.session.compare.distance import metres, recorded_world
+from sandbox.session.compare.divergence import differing_particle, number_text
+from sandbox.session.player.page import told_states
 from sandbox.session.session import Session
 
 # Of one side of a picture, and of a GIF [pixels]; of the line of words over each.
@@ -137,9 +136,9 @@ def _state_at(run: Session, tick: int) -> Snapshot:
 
 def _farthest(comparison: Comparison, slots: tuple[int, int]) -> list[Shown]:
     """Both runs at the tick at which a particle is farthest away."""
-    tick, apart = comparison.telling_tick, comparison.apart
-    assert apart is not None
-    words = f"tick {tick}: {apart.particle}, {metres(apart.farthest)} apart"
+    tick, distance = comparison.telling_tick, comparison.distance
+    assert distance is not None
+    words = f"tick {tick}: {distance.particle}, {metres(distance.farthest)} apart"
     before = None
     if comparison.expected is not None:
         before = _state_at(comparison.expected, tick)
@@ -158,7 +157,7 @@ def _stored(comparison: Comparison, tick: int | None, ring: int | None) -> list[
     stored = replay.states[tick]
     try:
         # As it stands in the file, also where its hash belies it.
-        state = decode_state(replay.level, tick, stored.arrays, stored.settings, stored.joined)
+        state = stored.of(replay.level, tick)
     except ValueError:
         return []
     side = "before" if tick < comparison.divergence.tick else "after"

@@ -127,14 +127,13 @@ class Export:
         write_file(path, page_text(*made).encode())
 
     def _write_reel(self, path: Path) -> Slices:
-        from sandbox.session.player.page import PlayerPage
-        from sandbox.session.player.reel import Reel, steps_between
+        from sandbox.session.player.page import PlaybackData, PlayerPage, steps_between
 
         film, excerpt, box = self.film, self.excerpt, np.array(self.film.box)
         ticks = max(1, round((excerpt.end - excerpt.start) * film.rate))
         reels, count = [], len(film.parts)
         for number, (words, part) in enumerate(film.parts):
-            reel, passed = Reel(words or excerpt.name, film.level, box), 0
+            reel, passed = PlaybackData(words or excerpt.name, film.level, box), 0
             for world in part.states(excerpt.start, excerpt.end):
                 if world is not None:
                     if passed % steps_between(ticks, world.particle_count, count) == 0:

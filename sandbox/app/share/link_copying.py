@@ -11,7 +11,7 @@ from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands.records import script_of
-from sandbox.session.link.scene_link import run_of
+from sandbox.session.replay.link import run_of
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from sandbox.app.share.runs_for_pages import is_for_pages, run_for_pages
 from sandbox.level.document.model import Level
 from sandbox.session.commands.command import CommandError
-from sandbox.session.link.scene_link import fragment_of, level_record
+from sandbox.session.replay.link import fragment_of, level_record
 from sandbox.session.replay.recording import Replay, ReplayError
 
 

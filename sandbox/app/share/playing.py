@@ -26,9 +26,8 @@ from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.link.scene_link import level_record
 from sandbox.session.replay.format import header, seal
-from sandbox.version import __version__
+from sandbox.session.replay.link import level_record
 
 # Metrics that need the energies of areas and bends, which a page does not have.
 NOT_MEASURED = ("energy", "potential_energy")
@@ -128,7 +127,7 @@ def _check(check: CheckDef, world: World) -> dict[str, Any]:
 
 def _header(level: Level) -> str:
     """The first line of a recording, without its end."""
-    line, _ = seal(header(level, PHYSICS_VERSION, __version__), "")
+    line, _ = seal(header(level), "")
     return line.decode().rpartition(', "chain"')[0]
 
 

@@ -21,8 +21,7 @@ from sandbox.physics.analysis import applied_forces, query
 from sandbox.physics.meshing import fitting
 from sandbox.physics.softness import body_motion
 from sandbox.session import summary
-from sandbox.session.link import packing, scene_link
-from sandbox.session.replay import format
+from sandbox.session.replay import format, link
 from sandbox.tools import drawing, pulling
 
 MODULE = WEB / "shared.js"
@@ -35,8 +34,8 @@ def shared_values() -> dict[str, dict[str, Any]]:
     return {
         "RECORDING": _of(format, "TICK_DIGITS", "ARRAY_DIGITS", "STATE_TICKS")
         | {"CHAIN_DIGITS": format.CHAIN_DIGITS[format.VERSION]},
-        "LINK": _of(scene_link, "MARK", "VERSION", "LONGEST", "UNPACKED_LIMIT", "RUN_LIMIT")
-        | _of(packing, "COMMAND_LIMIT", "FARTHEST", "PER_METRE", "HANDS", "MOVE"),
+        "LINK": _of(link, "MARK", "VERSION", "LONGEST", "UNPACKED_LIMIT", "RUN_LIMIT", "COMMAND_LIMIT")
+        | _of(link, "FARTHEST", "PER_METRE", "HANDS", "MOVE"),
         "CHECKS": _of(checks, "STILL") | _of(summary, "STRAIN_WINDOW"),
         "PACE": {"LONGEST": loop.LONGEST_FRAME, "BUDGET": playback.TICK_BUDGET},
         "HANDS": {

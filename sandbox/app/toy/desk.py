@@ -6,8 +6,7 @@ from typing import Any
 import pygame
 from filelock import FileLock, Timeout
 
-from sandbox.editor.storage.data_folder import data_folder
-from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.editor.storage.preferences import data_folder, preference, set_preference
 
 # Under what toys are remembered; this many places are kept, of the levels that were toys last.
 KEPT, MOST_PLACES = "toy", 40

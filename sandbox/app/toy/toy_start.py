@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.editor.storage.data_folder import data_folder
+from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.reading.files import write_level
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from sandbox.app.base.shortcuts import Mode, hint, use_keys
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
-from sandbox.app.compare.twin import TwinPlayback
+from sandbox.app.compare.second_run import TwinPlayback
 from sandbox.app.contracts.screen import Figures, Screen
 from sandbox.app.draw.colours import BACKGROUND, show_theme
 from sandbox.app.edit.documents import DocumentActions

@@ -11,7 +11,7 @@ from pathlib import Path
 from sandbox.app.base.desktop import copy_text
 from sandbox.app.contracts.application import Application
 from sandbox.app.widgets.dialogs import choose
-from sandbox.editor.storage.data_folder import data_folder
+from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.format.level_error import one_line
 
 # This many faults within this time [s], and no frame can be trusted any more.

@@ -23,7 +23,7 @@ from sandbox.app.widgets.dialogs import ask
 from sandbox.app.window.bringing import offer_to_bring
 from sandbox.bring.bring import is_brought
 from sandbox.editor.document import UNTITLED
-from sandbox.editor.storage.recent import remember_played
+from sandbox.editor.storage.preferences import remember_played
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
@@ -31,9 +31,8 @@ from sandbox.level.reading.files import load_level, read_bytes, read_level, ship
 from sandbox.session.commands import CommandError
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.replay.scene_file import SUFFIX as SCENE
-from sandbox.session.replay.scene_file import begins_as_scene, read_scene, scene_lines
-from sandbox.session.scene import RunScene
+from sandbox.session.scene import SUFFIX as SCENE
+from sandbox.session.scene import RunScene, begins_as_scene, read_scene, scene_lines
 from sandbox.session.sweep.grid import SweepError
 from sandbox.session.transaction import Interrupted
 

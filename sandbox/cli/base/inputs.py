@@ -34,7 +34,7 @@ def recording_of(name: str, partial: bool = False, retold: bool = False) -> "Rep
 
     Raises Refused.
     """
-    from sandbox.session.link.scene_link import is_link, replay_of
+    from sandbox.session.replay.link import is_link, replay_of
     from sandbox.session.replay.reader import read_replay
     from sandbox.session.replay.recording import ReplayError
 
@@ -46,7 +46,7 @@ def recording_of(name: str, partial: bool = False, retold: bool = False) -> "Rep
 
 def is_replay(name: str) -> bool:
     """Whether a file's first bytes are a recording's, or a link's letters; anything else is taken for a level."""
-    from sandbox.session.link.scene_link import is_link
+    from sandbox.session.replay.link import is_link
     from sandbox.session.replay.reader import begins_as_replay
 
     try:

@@ -1,15 +1,23 @@
 """Levels that run below a progress bar."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sandbox.cli.base.inputs import Refused
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 if TYPE_CHECKING:
+    from sandbox.level.assembly.level_world import LevelWorld
     from sandbox.physics.world import World
+    from sandbox.session.compare.comparison import Comparison
+    from sandbox.session.player.page import Watched
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
     from sandbox.session.summary import Summary
+
+PAGE = ".html"
 
 
 def run_with_bar(
@@ -31,3 +39,39 @@ def run_with_bar(
             return run(session, ticks, after)
         except CommandError as error:
             raise Refused(*(f"{source}: tick {session.tick}: {fault}" for fault in error.faults)) from None
+
+
+@contextmanager
+def watching(ticks: int) -> "Iterator[Watched]":
+    """Show how far it is while this many ticks are played in all, and let Ctrl+C end it between two."""
+    with Progress(ticks) as bar, interrupted_between_ticks() as look_up:
+
+        def watched(states: "Iterable[LevelWorld]") -> "Iterator[LevelWorld]":
+            for state in states:
+                yield state
+                bar.update()
+                look_up()
+
+        yield watched
+
+
+def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Replay | None") -> str:
+    """Write the page that plays one run, which has not begun; what was written."""
+    from sandbox.session.player.page import PlayerPage, command_marks, played, told_of, watches_of
+
+    runs = [session]
+    watches = watches_of(runs)
+    with watching(ticks) as watched:
+        reels = played([name], runs, ticks, watched=watched, watches=watches)
+        page = PlayerPage(name, *reels, marks=command_marks(replay), happened=told_of(runs, watches))
+    page.write(path)
+    return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.reels[0].ticks)} pictures"
+
+
+def write_report(found: "Comparison", path: Path) -> None:
+    """Write the page that plays the recorded run beside the one that diverged from it."""
+    from sandbox.session.player.page import report_page
+
+    with watching(2 * found.replay.ticks) as watched:
+        page = report_page(found, watched)
+    page.write(path)

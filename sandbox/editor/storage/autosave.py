@@ -7,7 +7,6 @@ import itertools
 import json
 import os
 import secrets
-import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -16,8 +15,9 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from sandbox.editor.storage.data_folder import data_folder
+from sandbox.editor.storage.background_writer import BackgroundWriter
 from sandbox.editor.storage.level_file import StorageError
+from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
@@ -30,10 +30,6 @@ _SUFFIX = ".autosave"
 _SLICE = 400
 # Pause [s] after each slice; a level of 20,000 particles and springs takes 0.1 s more for it.
 _BREATH = 0.001
-# Pause [s] after a write, as many times the time it took, within these bounds. With the longest write the pause is
-# what the newest edit may be behind: together they stay under the promised 10 s.
-_PAUSE_FACTOR = 5.0
-_PAUSES = (0.25, 4.0)
 
 
 @dataclass(frozen=True)
@@ -48,108 +44,63 @@ class _Edit:
 class Autosave:
     """Keeps the level of one window on disk while it is edited; what is left after a crash is among the orphans.
 
-    folder: where, by default in the person's data folder. `fault`: a line for the person while nothing can be
-    written there, else None. It is written again at each pause until it succeeds.
+    folder: where, by default in the person's data folder.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = autosave_folder() if folder is None else folder
-        self.fault: str | None = None
         self._path = self.folder / f"{secrets.token_hex(8)}{_SUFFIX}"
         self._lock: FileLock | None = None
-        self._changed = threading.Condition()
-        self._edit: _Edit | None = None
-        # Numbers of the notes so far: the newest, the one that was last tried, the one that was last written.
-        self._noted = self._tried = self._written = 0
-        self._is_closing = False
         self._adopted: tuple[Orphan, ...] = ()
-        self._thread: threading.Thread | None = None
+        # The level, None = no file; and the orphans that go once it is written.
+        self._writer: BackgroundWriter[tuple[_Edit | None, tuple[Orphan, ...]]] = BackgroundWriter("work", self._write)
+
+    @property
+    def fault(self) -> str | None:
+        """A line for the person while nothing can be written, else None."""
+        return self._writer.fault
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
         """Keep this level from now on; returns at once, and is written at most one edit or 10 s later."""
-        self._want(_Edit(level, path, label))
+        self._writer.note(self._path, (_Edit(level, path, label), self._adopted))
 
     def clear(self) -> None:
         """Remove what was kept, as the level has been saved, or given up by the person."""
-        if self._thread is not None:
-            self._want(None)
+        if self._writer.has_begun:
+            self._writer.note(self._path, (None, self._adopted))
 
     def adopt(self, orphan: "Orphan", level: Level) -> None:
         """Keep the level of an orphan; the orphan itself goes once that is written."""
-        self._want(_Edit(level, orphan.edited, "Recover"), orphan)
+        self._adopted = (*self._adopted, orphan)
+        self.note(level, orphan.edited, "Recover")
 
     def settle(self) -> None:
         """Wait until what was noted is written, or cannot be."""
-        with self._changed:
-            noted = self._noted
-            self._changed.wait_for(lambda: self._tried >= noted)
+        self._writer.settle()
 
     def close(self) -> None:
         """Write what was noted last and end; what was not cleared is offered at the next start."""
-        with self._changed:
-            self._is_closing = True
-            self._changed.notify_all()
-        if self._thread is not None:
-            self._thread.join()
+        self._writer.close()
         if self._lock is not None:
             self._lock.release()
             if not self._path.exists():
                 _remove(_lock_path(self._path))
-        self._thread = self._lock = None
+        self._lock = None
 
-    def _want(self, edit: _Edit | None, *adopted: "Orphan") -> None:
-        with self._changed:
-            self._edit, self._noted = edit, self._noted + 1
-            self._adopted = (*self._adopted, *adopted)
-            if self._thread is None:
-                self._is_closing = False
-                self._thread = threading.Thread(target=self._work, name="autosave", daemon=True)
-                self._thread.start()
-            self._changed.notify_all()
-
-    def _work(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._written < self._noted or self._is_closing)
-                if self._written == self._noted:
-                    return
-                # Orphans that come with a later edit stay until that one is written.
-                edit, number, adopted = self._edit, self._noted, self._adopted
-            start = time.monotonic()
-            fault = self._write(edit, adopted)
-            shortest, longest = _PAUSES
-            pause = longest if fault else min(max(_PAUSE_FACTOR * (time.monotonic() - start), shortest), longest)
-            with self._changed:
-                self.fault, self._tried = fault, number
-                if fault is None:
-                    self._written, self._adopted = number, self._adopted[len(adopted) :]
-                self._changed.notify_all()
-                if self._is_closing and fault is not None:
-                    return
-                self._changed.wait_for(lambda: self._is_closing, pause)
-
-    def _write(self, edit: _Edit | None, adopted: "tuple[Orphan, ...]") -> str | None:
-        """Bring the file to what is wanted, in place of the adopted orphans: None, or why it cannot be."""
-        try:
-            if edit is None:
-                self._path.unlink(missing_ok=True)
-            else:
-                self._take_lock()
-                write_file(self._path, _data(edit, hurried=lambda: self._is_closing))
-        except (OSError, ValueError, MemoryError) as error:
-            why = refusal_of(error) if isinstance(error, OSError) else one_line(str(error))
-            return f"The work cannot be kept in {one_line(str(self.folder))}: {why}. Save it yourself."
+    def _write(self, path: Path, wanted: "tuple[_Edit | None, tuple[Orphan, ...]]") -> None:
+        edit, adopted = wanted
+        if edit is None:
+            path.unlink(missing_ok=True)
+        else:
+            # Only once there is something to keep, so that windows that edit nothing leave nothing behind.
+            if self._lock is None:
+                self.folder.mkdir(parents=True, exist_ok=True)
+                lock = FileLock(_lock_path(path), thread_local=False)
+                lock.acquire(timeout=0)
+                self._lock = lock
+            write_file(path, _data(edit, hurried=lambda: self._writer.is_closing))
         for orphan in adopted:
             orphan.dismiss()
-        return None
-
-    def _take_lock(self) -> None:
-        # Only once there is something to keep, so that windows that edit nothing leave nothing behind.
-        if self._lock is None:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            lock = FileLock(_lock_path(self._path), thread_local=False)
-            lock.acquire(timeout=0)
-            self._lock = lock
 
 
 @dataclass(frozen=True)

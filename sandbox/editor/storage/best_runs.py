@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.editor.storage.data_folder import data_folder
+from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.document.model import Level
 from sandbox.level.format.writing import write_file
 from sandbox.level.reading.files import level_data

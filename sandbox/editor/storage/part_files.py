@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.editor.storage.data_folder import data_folder
 from sandbox.editor.storage.level_file import StorageError
+from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced

@@ -2,46 +2,42 @@
 
 import contextlib
 import secrets
-import threading
 import time
 from pathlib import Path
 
-from sandbox.editor.storage.data_folder import data_folder
-from sandbox.level.format.level_error import one_line
-from sandbox.level.format.writing import refusal_of, write_file
-from sandbox.session.replay.scene_file import SUFFIX, scene_lines
-from sandbox.session.scene import RunScene
+from sandbox.editor.storage.background_writer import BackgroundWriter
+from sandbox.editor.storage.preferences import data_folder
+from sandbox.level.format.writing import write_file
+from sandbox.session.scene import SUFFIX, RunScene, scene_lines
 
 # Scenes that are kept, newest first; one that is older than all of these goes.
 KEPT = 60
-# Pause [s] after a write of a run that goes on, as many times the time it took, within these bounds.
-_PAUSE_FACTOR = 5.0
-_PAUSES = (0.25, 4.0)
 
 
 class SceneShelf:
     """Keeps the runs of one window on disk: the present one as it goes on, and each that was set aside as it stood.
 
-    folder: where, by default in the person's data folder. `fault`: a line for the person while nothing can be written.
+    folder: where, by default in the person's data folder.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = shelf_folder() if folder is None else folder
-        self.fault: str | None = None
         # Where the present run is kept, once something was done in it.
         self.present = self._new_path()
-        self._changed = threading.Condition()
-        self._wanted: dict[Path, tuple[RunScene, Path | None]] = {}
-        self._busy = self._is_closing = False
         # What was set aside, by where it is kept.
         self._aside: dict[Path, RunScene] = {}
-        self._thread: threading.Thread | None = None
+        self._writer: BackgroundWriter[tuple[RunScene, Path | None]] = BackgroundWriter("run", self._write)
+
+    @property
+    def fault(self) -> str | None:
+        """A line for the person while nothing can be written, else None."""
+        return self._writer.fault
 
     def note(self, scene: RunScene, source: Path | None) -> None:
         """Keep the present run so from now on; source: the file of its level. Returns at once."""
         if scene.script:
             self.present = self._place(scene)
-            self._want(scene, source)
+            self._writer.note(self.present, (scene, source))
 
     def set_aside(self, scene: RunScene, source: Path | None) -> None:
         """Keep the present run so for good: what comes is another one."""
@@ -56,9 +52,7 @@ class SceneShelf:
         aside = self._aside.get(self.present)
         if aside is not None and not aside.is_done_by(scene.script):
             return
-        with self._changed:
-            self._wanted.pop(self.present, None)
-        self.settle()
+        self._writer.forget(self.present)
         with contextlib.suppress(OSError):
             self.present.unlink(missing_ok=True)
         self._aside.pop(self.present, None)
@@ -76,68 +70,23 @@ class SceneShelf:
 
     def settle(self) -> None:
         """Wait until all that was noted is written, or cannot be."""
-        with self._changed:
-            self._changed.wait_for(lambda: not (self._wanted or self._busy))
+        self._writer.settle()
 
     def close(self) -> None:
         """Write what was noted last and end."""
-        with self._changed:
-            self._is_closing = True
-            self._changed.notify_all()
-        if self._thread is not None:
-            self._thread.join()
-        self._thread = None
+        self._writer.close()
 
     def _new_path(self) -> Path:
         return self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(6)}{SUFFIX}"
 
-    def _want(self, scene: RunScene, source: Path | None) -> None:
-        with self._changed:
-            self._wanted[self.present] = scene, source
-            if self._thread is None:
-                self._is_closing = False
-                self._thread = threading.Thread(target=self._work, name="scenes", daemon=True)
-                self._thread.start()
-            self._changed.notify_all()
-
-    def _work(self) -> None:
-        while True:
-            with self._changed:
-                self._busy = False
-                self._changed.notify_all()
-                self._changed.wait_for(lambda: self._wanted or self._is_closing)
-                if not self._wanted:
-                    return
-                path = next(iter(self._wanted))
-                scene, source = self._wanted.pop(path)
-                self._busy = True
-            start = time.monotonic()
-            self.fault = self._write(path, scene, source)
-            shortest, longest = _PAUSES
-            pause = min(max(_PAUSE_FACTOR * (time.monotonic() - start), shortest), longest)
-            with self._changed:
-                self._busy = False
-                self._changed.notify_all()
-                # A run that goes on waits; where another has begun meanwhile, its file is the next one.
-                self._changed.wait_for(self._is_pressed, pause)
-
-    def _is_pressed(self) -> bool:
-        return self._is_closing or len(self._wanted) > 1
-
-    def _write(self, path: Path, scene: RunScene, source: Path | None) -> str | None:
-        """Write a scene: None, or why it cannot be."""
-        try:
-            is_new = not path.exists()
-            self.folder.mkdir(parents=True, exist_ok=True)
-            write_file(path, b"".join(scene_lines(scene, source)))
-        except (OSError, ValueError, MemoryError) as error:
-            why = refusal_of(error) if isinstance(error, OSError) else one_line(str(error))
-            return f"The run cannot be kept in {one_line(str(self.folder))}: {why}. Save it yourself."
+    def _write(self, path: Path, wanted: tuple[RunScene, Path | None]) -> None:
+        is_new = not path.exists()
+        self.folder.mkdir(parents=True, exist_ok=True)
+        write_file(path, b"".join(scene_lines(*wanted)))
         if is_new:
             for old in kept_scenes(self.folder)[KEPT:]:
                 with contextlib.suppress(OSError):
                     old.unlink()
-        return None
 
 
 def shelf_folder() -> Path:

@@ -1,5 +1,5 @@
 // Link: a run in the fragment of an address, which no browser sends to a server; written and read as
-// session/link/scene_link.py does it.
+// session/replay/link.py does it.
 import { Refusal } from './commands.js';
 import { isWhole } from './kit.js';
 import { packed } from './recording.js';

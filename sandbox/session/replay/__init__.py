@@ -1,0 +1,14 @@
+from pathlib import Path
+
+RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file is called as recordings are; one whose name begins with a point is not whole yet."""
+    return path.name.endswith(RECORDINGS) and not path.name.startswith(".")
+
+
+def recordings_in(folder: Path) -> list[Path]:
+    """The recordings in a folder and those in it, by their paths; hidden folders are left out."""
+    found = [path for path in folder.rglob("*") if is_recording(path) and path.is_file()]
+    return sorted(path for path in found if not any(part.startswith(".") for part in path.relative_to(folder).parts))

@@ -41,9 +41,11 @@ from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED, FAMILIES, OF_RULES, Column, Family
+from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import World, WorldSettings
 from sandbox.session.commands.adding import name_slots_to
+from sandbox.version import __version__
 
 FORMAT = "spring-sandbox/replay"
 VERSION = 2
@@ -87,14 +89,14 @@ def level_digest(data: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str, Any]:
+def header(level: Level) -> dict[str, Any]:
     """The first line's values."""
     data = level_data(level)
     return {
         "format": FORMAT,
         "version": VERSION,
-        "physics_version": physics_version,
-        "sandbox_version": sandbox_version,
+        "physics_version": PHYSICS_VERSION,
+        "sandbox_version": __version__,
         "level_sha256": level_digest(data),
         **({"level_file": file_of(level)} if file_of(level) else {}),
         "level": data,
@@ -175,6 +177,10 @@ def decode_state(
         raise ValueError("state.hand_force: there is one of each hand")
     if len(arrays["setting_ticks"]) != NUMBER_COUNT:
         raise ValueError(f"state.setting_ticks: there are {NUMBER_COUNT}, one of each number of the settings")
+    equipment = _equipment(world, joined, (grab_particle, grab_spring))
+    driven, values = len(equipment.actuators.names), len(arrays["part_value"])
+    if driven != values:
+        raise ValueError(f"state.part_value: has {values} values, where there are {driven} driven parts")
     return Snapshot(
         {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,
@@ -182,7 +188,7 @@ def decode_state(
         grab_particle=grab_particle,
         grab_spring=grab_spring,
         terrain=NO_TERRAIN,
-        equipment=_equipment(world, joined, (grab_particle, grab_spring)),
+        equipment=equipment,
     )
 
 

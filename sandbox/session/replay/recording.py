@@ -1,19 +1,41 @@
-"""Replay: a recorded run as a file holds it, read back."""
+"""A recorded run: `Replay`, as a file holds it, `Recorder`, which writes it as it happens, and its text for people."""
 
-from collections.abc import Mapping
+import gzip
+import io
+import json
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, BinaryIO
 
+import numpy as np
+
+from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import Level
+from sandbox.level.reading.files import file_of
+from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.snapshot import Left, Snapshot, hash_by_array, leave, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
+from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.format import decode_state
+from sandbox.session.replay.format import (
+    ARRAY_DIGITS,
+    STATE_TICKS,
+    TICK_DIGITS,
+    decode_state,
+    encode_state,
+    header,
+    seal,
+)
 
-_PLACES = {name: place for place, name in enumerate(BY_STORED)}
+# Ticks after which what is compressed reaches the file: a second of the usual rate.
+FLUSH_TICKS = 60
+GZIP_LEVEL = 9
 
 
 class ReplayError(ValueError):
@@ -42,10 +64,20 @@ class TickHashes:
         """Whether a state of this hash is the recorded one."""
         return whole.startswith(self.whole)
 
-    def differs(self, array: str, present: Mapping[str, str]) -> bool:
-        """Whether a state of these hashes by array has another array of that name."""
-        digits = self.arrays[_PLACES[array]]
-        return present.get(array, "")[: len(digits) or None] != digits
+    @classmethod
+    def of(cls, world: World) -> "TickHashes":
+        """All digits of a world's."""
+        by_array = hash_by_array(world)
+        return cls(state_hash(world, by_array), tuple(by_array.get(name, "") for name in BY_STORED))
+
+    def agrees(self, other: "TickHashes") -> bool:
+        """Whether they may be of one state, by the digits that both have."""
+        return self.whole[: len(other.whole)] == other.whole[: len(self.whole)]
+
+    def unlike(self, other: "TickHashes") -> list[str]:
+        """The arrays, in the order of hashing, that are others in the state of other hashes."""
+        pairs = zip(BY_STORED, self.arrays, other.arrays, strict=True)
+        return [name for name, a, b in pairs if a[: len(b) or None] != b[: len(a) or None]]
 
 
 @dataclass(frozen=True)
@@ -56,6 +88,10 @@ class StoredState:
     settings: WorldSettings
     joined: tuple[dict[str, Any], ...]
     line: int
+
+    def of(self, level: Level, tick: int) -> Snapshot:
+        """The state at that tick of a run of the level. Raises ValueError, one line."""
+        return decode_state(level, tick, self.arrays, self.settings, self.joined)
 
 
 @dataclass(frozen=True)
@@ -116,17 +152,172 @@ class Replay:
         if stored is None:
             raise ReplayError(f"{self.source}: no state is stored at tick {tick}")
         try:
-            snapshot = decode_state(self.level, tick, stored.arrays, stored.settings, stored.joined)
+            snapshot = stored.of(self.level, tick)
         except ValueError as error:
             raise ReplayError(f"{self.source}: line {stored.line}: {error}") from None
-        driven = len(snapshot.equipment.actuators.names)
-        if len(snapshot.actuator_value) != driven:
-            raise ReplayError(
-                f"{self.source}: line {stored.line}: state.part_value: has {len(snapshot.actuator_value)} values, "
-                f"where there are {driven} driven parts"
-            )
         if not self.hashes[tick].fits(state_hash(snapshot)):
             raise ReplayError(
                 f"{self.source}: line {stored.line}: state: is not the one whose hash stands at tick {tick}"
             )
         return snapshot
+
+
+@contextmanager
+def faults_of(replay: Replay) -> Iterator[None]:
+    """Say of which recording a command cannot be carried out. Raises ReplayError."""
+    try:
+        yield
+    except CommandError as error:
+        raise ReplayError(*(f"{replay.source}: {fault}" for fault in error.faults)) from None
+
+
+class Recorder:
+    """Writes one run to a file, from the level's first tick; a name ending in .gz is compressed.
+
+    Every line reaches the file when it is written (compressed: every 60 ticks), so that a crash leaves a recording
+    that is only cut off. state_ticks: from one stored state to the next.
+    Raises OSError where the file cannot be written.
+    """
+
+    def __init__(self, path: Path, level: Level, world: World, state_ticks: int = STATE_TICKS) -> None:
+        self.path = Path(path)
+        self._chain = ""
+        self._state_ticks = state_ticks
+        # The world as a tick or a command left it last.
+        self._left = leave(world, hash_by_array(world))
+        # Of the last tick, and of the last stored state: hashes by array, and there the rows of each too.
+        self._hashes: dict[str, str] = {}
+        self._stored: dict[str, tuple[str | None, int]] = {}
+        # Whether the state is still the one whose hashes were written last, and not stored.
+        self._is_storable = False
+        raw = self._raw = io.FileIO(self.path, "wb")
+        # No name and no time in the compressed header, so that the same run gives the same bytes.
+        self._file: BinaryIO | gzip.GzipFile = (
+            gzip.GzipFile(filename="", mode="wb", compresslevel=GZIP_LEVEL, fileobj=raw, mtime=0)
+            if self.path.suffix == ".gz"
+            else io.BufferedWriter(raw)
+        )
+        try:
+            self._write(header(level))
+            self.write_tick(world)
+        except OSError as error:
+            self.abandon()
+            # What has not even begun is no recording; a device is not for taking away.
+            with suppress(OSError):
+                if self.path.is_file():
+                    self.path.unlink()
+            error.filename = str(self.path)
+            raise
+
+    def write_command(self, world: World, gesture: int, record: dict[str, Any]) -> None:
+        """Write a command that was applied to the world, before its step."""
+        self._is_storable = False
+        self._write({"tick": world.tick, "gesture": gesture, "command": record})
+        self._left = leave(world, hash_by_array(world))
+
+    def write_tick(self, world: World) -> None:
+        """Write what changed in the hashes of the present state, and now and then the state itself."""
+        hashes, before = hash_by_array(world), self._hashes
+        storing = world.tick % self._state_ticks == 0
+        told = hashes if storing else [name for name in BY_STORED if hashes.get(name) != before.get(name)]
+        arrays = {name: hashes[name][:ARRAY_DIGITS] if name in hashes else None for name in told}
+        self._hashes = hashes
+        self._left = leave(world, hashes)
+        whole = state_hash(world, hashes)
+        self._write({"tick": world.tick, "hash": whole if storing else whole[:TICK_DIGITS], "arrays": arrays})
+        self._is_storable = not storing
+        if storing:
+            self._write_state(world, hashes)
+        if world.tick % FLUSH_TICKS == 0 and isinstance(self._file, gzip.GzipFile):
+            self._file.flush(zlib.Z_SYNC_FLUSH)
+
+    def note_written(self, world: World) -> str | None:
+        """Write what was written into the world since a command or a tick left it; in words, None where nothing was."""
+        left = self._left
+        names = left.written(world)
+        if not names:
+            return None
+        self._left = leave(world, hash_by_array(world))
+        self._is_storable = False
+        written = ByHand(world.tick, tuple(_place(name, left, world) for name in names))
+        self._write({"tick": world.tick, "written": written.what})
+        return str(written)
+
+    def _write_state(self, world: World, hashes: dict[str, str]) -> None:
+        present = {name: (hashes.get(name), len(getattr(world, column.name))) for name, column in BY_STORED.items()}
+        changed = [name for name in BY_STORED if present[name] != self._stored.get(name)]
+        self._stored = present
+        self._write({"tick": world.tick, **encode_state(world, changed)})
+
+    def finish(self, world: World) -> None:
+        """Write the last state and the last line, and close the file."""
+        try:
+            if self._is_storable:
+                self._write_state(world, self._hashes)
+            self._write({"end": True, "tick": world.tick, "hash": state_hash(world)})
+            self._file.close()
+        finally:
+            self.abandon()
+
+    def abandon(self) -> None:
+        """Close the file as it is."""
+        for file in (self._file, self._raw):
+            with suppress(OSError):
+                file.close()
+
+    def _write(self, values: dict[str, Any]) -> None:
+        line, self._chain = seal(values, self._chain)
+        self._file.write(line)
+        if not isinstance(self._file, gzip.GzipFile):
+            self._file.flush()
+
+
+def _place(array: str, left: Left, world: World) -> str:
+    """An array by its name in files, with the first place in it whose bytes are other, where they are known."""
+    before = left.kept[array][0] if array in left.kept else None
+    if array not in BY_STORED:
+        return array
+    values = getattr(world, BY_STORED[array].name)
+    if before is None or len(before) != values.nbytes or not len(values):
+        return array
+    row = values.nbytes // len(values)
+    present = np.frombuffer(values.tobytes(), dtype=f"V{row}")
+    different = np.flatnonzero(present != np.frombuffer(before, dtype=f"V{row}"))
+    if not len(different):
+        return array
+    name = slot_name(world, array, int(different[0]))
+    more = f" and {len(different) - 1} more" if len(different) > 1 else ""
+    return f"{array}[{different[0]}]" + (f" ({name})" if name else "") + more
+
+
+def recording_text(replay: Replay) -> str:
+    """The whole text, with the hash of the end as its last line."""
+    return "".join(f"{line}\n" for line in _lines(replay))
+
+
+def commands_text(replay: Replay) -> str:
+    """The commands alone, a JSON object a line, as `sandbox run --commands` takes them."""
+    return "".join(f"{line}\n" for line in _command_lines(replay))
+
+
+def _lines(replay: Replay) -> Iterator[str]:
+    name = file_of(replay.level)
+    yield f"recording of {name + ', ' if name else ''}{json.dumps(replay.level.name, ensure_ascii=False)}"
+    yield f"physics version {replay.physics_version}, recorded by version {replay.sandbox_version}"
+    yield ""
+    yield "level"
+    yield level_text(replay.level).rstrip("\n")
+    yield ""
+    yield f"commands: {len(replay.script) or 'none'}"
+    yield from _command_lines(replay)
+    yield ""
+    yield from map(str, replay.written)
+    seconds = replay.ticks / replay.level.settings.tick_rate
+    whole = replay.end_hash is not None
+    yield f"{'ends' if whole else 'cut off'} after tick {replay.ticks}, {seconds:g} s"
+    yield f"hash {replay.end_hash if whole else replay.hashes[-1].whole}"
+
+
+def _command_lines(replay: Replay) -> Iterator[str]:
+    for line in replay.script:
+        yield json.dumps({"tick": line.tick, "gesture": line.gesture, "command": line.record}, ensure_ascii=False)

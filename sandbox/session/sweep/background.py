@@ -15,8 +15,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from sandbox.session.sweep.case import run_case
 from sandbox.session.sweep.grid import SweepError, SweepGrid, SweepRequest
+from sandbox.session.sweep.running import run_case
 
 # How much nicer than others a child is.
 NICENESS = 10

@@ -1,15 +1,21 @@
 """SweepGrid: a level and the points of settings at which a sweep runs it."""
 
+import contextlib
+import csv
 import hashlib
+import io
 import itertools
 import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
 
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.writing import write_file
 from sandbox.level.reading.files import level_data, parse_level
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.level_edits import SILENT, with_value
@@ -18,8 +24,9 @@ from sandbox.session.level_edits import SILENT, with_value
 CS, CD = "cs", "cd"
 # What is measured of a run, before its checks.
 FIGURES = ("settle_time", "max_strain", "energy_drift", "broken_springs", "blew_up")
-
 Value = float | int | str
+# More characters are no table of a sweep that can be run.
+LONGEST_TABLE = 100_000_000
 
 
 class SweepError(ValueError):
@@ -101,11 +108,6 @@ class SweepGrid:
         return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
-@lru_cache(maxsize=4)
-def _level(text: str) -> Level:
-    return parse_level(text.encode(), "the swept level")
-
-
 def case_level(level: Level, columns: Sequence[str], case: Sequence[Value]) -> Level:
     """The level of one point, but for Cs and Cd. Raises SweepError for a value that it cannot have."""
     try:
@@ -115,3 +117,124 @@ def case_level(level: Level, columns: Sequence[str], case: Sequence[Value]) -> L
     except LevelError as error:
         raise SweepError(f"{name} = {value}: {error.faults[0]}") from None
     return level
+
+
+@lru_cache(maxsize=4)
+def _level(text: str) -> Level:
+    return parse_level(text.encode(), "the swept level")
+
+
+Rows = Mapping[int, Sequence[Any]]
+
+
+def read_table(path: Path, level: Level, materials: Sequence[str | None] = (None,)) -> tuple[SweepGrid, Rows]:
+    """The sweep of a level that a table holds; materials: those whose Cs and Cd it may be of.
+
+    Raises SweepError where it is none, or is of another level, and OSError.
+    """
+    header, lines = _lines(path)
+    columns = header[: header.index(FIGURES[0])]
+    values = {name: tuple(dict.fromkeys(_value(line[k]) for line in lines)) for k, name in enumerate(columns)}
+    seconds, digest = float(lines[0][-2]), lines[0][-1]
+    ticks = max(1, round(seconds * level.settings.tick_rate))
+    for material in materials:
+        try:
+            grid = SweepGrid(level, values, ticks, material)
+            is_of_level = grid.digest == digest
+        except SweepError:
+            # A place that the level does not have.
+            is_of_level = False
+        if is_of_level:
+            return grid, _rows(path, grid, header, lines)
+    raise SweepError(f"{path}: is a sweep of another level, or of this one before it was changed")
+
+
+def _lines(path: Path) -> tuple[list[str], list[list[str]]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        text = file.read(LONGEST_TABLE + 1)
+    try:
+        header, *lines = csv.reader(io.StringIO(text), strict=True)
+        float(lines[0][-2])
+        is_table = len(text) <= LONGEST_TABLE and FIGURES[0] in header and header[-2:] == ["seconds", "level"]
+    except (ValueError, IndexError, csv.Error):
+        is_table = False
+    if not is_table or any(len(line) != len(header) for line in lines):
+        raise SweepError(f"{path}: is no table of a sweep")
+    return header, lines
+
+
+def _rows(path: Path, grid: SweepGrid, header: list[str], lines: list[list[str]]) -> Rows:
+    width = len(grid.columns)
+    ends = [repr(grid.seconds), grid.digest]
+    points = [tuple(map(_value, line[:width])) for line in lines]
+    if header != grid.header or points != grid.cases or any(line[-2:] != ends for line in lines):
+        raise SweepError(f"{path}: is not a whole sweep of one level, row by row")
+    try:
+        return {number: [_figure(cell) for cell in line[width:-2]] for number, line in enumerate(lines)}
+    except ValueError:
+        raise SweepError(f"{path}: has figures that are no numbers") from None
+
+
+def _figure(cell: str) -> float | int | None:
+    return None if cell == "" else int(cell) if cell.isdecimal() else float(cell)
+
+
+def _value(cell: str) -> Value:
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            continue
+    return cell
+
+
+def table_text(grid: SweepGrid, rows: Rows) -> str:
+    """The table of all rows by number; what there is none of is empty."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(grid.header)
+    for number, case in enumerate(grid.cases):
+        writer.writerow([*case, *rows[number], grid.seconds, grid.digest])
+    return file.getvalue()
+
+
+class Journal:
+    """The finished rows of a sweep, kept in a file beside its table until that is written.
+
+    rows: by number; replaced: whether the file was of another level or grid, which is forgotten.
+    fresh: forget what was there. Raises OSError.
+    """
+
+    def __init__(self, table: Path, grid: SweepGrid, fresh: bool = False) -> None:
+        self.path = table.with_name(table.name + ".unfinished")
+        self._table, self._grid = table, grid
+        self.rows: dict[int, list[Any]] = {}
+        self.replaced = False
+        self._first = json.dumps({"level": grid.digest, "ticks": grid.ticks, "columns": dict(grid.columns),
+                                  "figures": grid.figures})  # fmt: skip
+        lines: list[str] = []
+        if not fresh and self.path.exists():
+            lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)
+            self.replaced = bool(lines) and lines[0] != self._first + "\n"
+        for line in [] if self.replaced else lines[1:]:
+            # What was cut off in the middle of a line is no row.
+            with contextlib.suppress(ValueError):
+                number, row = json.loads(line)
+                self.rows[number] = row
+        self.save()
+
+    def save(self) -> None:
+        """Write the file again with all finished rows."""
+        lines = [self._first, *(json.dumps([number, row]) for number, row in self.rows.items())]
+        write_file(self.path, "".join(f"{line}\n" for line in lines).encode())
+
+    def add(self, number: int, row: list[Any]) -> None:
+        """Keep a row, on the disk too."""
+        self.rows[number] = row
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps([number, row]) + "\n")
+
+    def finish(self) -> None:
+        """Write the table, rows in the order of the grid, and remove the journal."""
+        write_file(self._table, table_text(self._grid, self.rows).encode())
+        self.path.unlink(missing_ok=True)

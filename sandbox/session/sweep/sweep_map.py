@@ -10,8 +10,7 @@ import numpy as np
 from sandbox.level.assembly.build_world import build_world
 from sandbox.physics.analysis.stability import CoefficientZones, coefficient_zones
 from sandbox.physics.arrays import Floats
-from sandbox.session.sweep.grid import CD, CS, SweepGrid, Value, case_level
-from sandbox.session.sweep.table import Rows
+from sandbox.session.sweep.grid import CD, CS, Rows, SweepGrid, Value, case_level
 
 # Maps in one picture; more could not be read.
 MOST_MAPS = 80

@@ -8,9 +8,9 @@ import numpy as np
 from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
-from sandbox.session.replay.divergence import Divergence
+from sandbox.session.compare.comparison import recorded_run
+from sandbox.session.compare.divergence import Divergence
 from sandbox.session.replay.recording import Replay
-from sandbox.session.replay.verify import recorded_run
 from sandbox.session.session import Session
 from tests.determinism.elsewhere import Image, Machine, watched
 from tests.determinism.seeds.difference import Differs, Watch, arrays_of

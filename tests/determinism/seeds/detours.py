@@ -8,8 +8,8 @@ from pathlib import Path
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import Command, Redo, SetGravity, Undo
 from sandbox.session.commands.records import from_record
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.determinism.seeds.difference import Arrays, Differs, Watch, arrays_of, first_bit, first_of_two, kept_arrays
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from sandbox.physics.snapshot import Snapshot, canonical_bytes, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
-from sandbox.session.replay.divergence import Divergence, first_difference
+from sandbox.session.compare.comparison import recorded_run
+from sandbox.session.compare.divergence import Divergence, first_difference
 from sandbox.session.replay.recording import Replay
-from sandbox.session.replay.verify import recorded_run
 
 Arrays = Mapping[str, NDArray[Any]]
 _SIGN = 1 << 63

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from sandbox.level.reading.files import read_level, write_level
-from sandbox.session.replay.divergence import Divergence
+from sandbox.session.compare.comparison import verify
+from sandbox.session.compare.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
-from sandbox.session.replay.resume import resume
-from sandbox.session.replay.verify import verify
+from sandbox.session.replay.rerecord import resume
 from sandbox.session.session import Session
 from tests.determinism.elsewhere import WEB
 from tests.determinism.seeds.calls_elsewhere import run_elsewhere

@@ -18,10 +18,8 @@ from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings
 from sandbox.session.replay.rerecord import with_settings
 from sandbox.session.sweep.background import BackgroundSweep
-from sandbox.session.sweep.grid import CD, CS, SweepError, SweepGrid
-from sandbox.session.sweep.journal import Journal
+from sandbox.session.sweep.grid import CD, CS, Journal, Rows, SweepError, SweepGrid, read_table
 from sandbox.session.sweep.sweep_map import panel_values
-from sandbox.session.sweep.table import Rows, read_table
 
 # Values on each axis of the pad, and how long each run is [s].
 SIDE, SECONDS = 13, 10.0

@@ -18,9 +18,8 @@ from matplotlib.ticker import MaxNLocator
 from sandbox.app.panel.sweeps.sweep_measures import SweepMeasure, measure_of, scale_of, shown_values
 from sandbox.physics.analysis.stability import CoefficientZones
 from sandbox.physics.arrays import Floats
-from sandbox.session.sweep.grid import CD, CS, SweepGrid
+from sandbox.session.sweep.grid import CD, CS, Rows, SweepGrid
 from sandbox.session.sweep.sweep_map import SweepPanel, edges, is_logarithmic, sweep_panels
-from sandbox.session.sweep.table import Rows
 
 # Sizes of a panel, and what stands around all of them [inch]; pixels an inch.
 PANEL, MARGINS, RESOLUTION = (3.1, 2.5), (1.4, 1.75), 110

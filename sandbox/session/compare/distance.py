@@ -1,4 +1,4 @@
-"""Apart: how far two runs come from each other, particle by particle, and whether that grows, shrinks or heals."""
+"""Trajectory distance: how far two runs come from each other, particle by particle, and whether that grows or heals."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -6,19 +6,19 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.physics.analysis.query import shown_particles
-from sandbox.physics.arrays import Slots
-from sandbox.physics.snapshot import restore
+from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.geometry.segment import lengths
+from sandbox.physics.snapshot import Snapshot, restore
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
 from sandbox.session.check_run import CheckWatch
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.adding import name_added
 from sandbox.session.outcome import outcome, outcome_text
-from sandbox.session.replay.format import decode_array, decode_state
+from sandbox.session.replay.format import decode_array
 from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Session
 
@@ -26,15 +26,15 @@ from sandbox.session.session import Session
 STILL_GROWING = 0.5
 # What a picture shows [m].
 VISIBLE = 1e-3
-# A run is told of at so many ticks, from the first that differs to the last.
-TOLD = 4
+# A course has so many ticks, from the first that differs to the last.
+COURSE = 4
 
 # Called with the ticks done and those in all.
 Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Apart:
+class TrajectoryDistance:
     """How far the particles of two runs are apart [m], of those that both have.
 
     first: the first tick at which one is elsewhere, None: none ever is; heals: the tick from which on none is any more.
@@ -72,7 +72,7 @@ class Apart:
             return f"{most}, the last"
         return f"{most}; {metres(self.end)} at the end, tick {self.last}"
 
-    def told(self) -> list[str]:
+    def lines_of_all(self) -> list[str]:
         """All of it, a line each."""
         alone = f"{self.alone} particle{'s are' if self.alone > 1 else ' is'} in one of the runs alone"
         return [
@@ -100,7 +100,9 @@ def metres(distance: float) -> str:
     return f"{100 * distance:.2g} cm" if distance >= 1e-3 else f"{distance:.1e} m" if distance else "0 m"
 
 
-def apart_in_step(expected: Session, actual: Session, ticks: int, progress: Progress | None = None) -> Apart:
+def distance_in_step(
+    expected: Session, actual: Session, ticks: int, progress: Progress | None = None
+) -> TrajectoryDistance:
     """Step two runs that are at the same tick on to another, and measure.
 
     From the first tick on, what both levels check is measured in both.
@@ -127,10 +129,10 @@ def apart_in_step(expected: Session, actual: Session, ticks: int, progress: Prog
     with np.errstate(over="ignore", invalid="ignore"):
         found = _measured(pairs(), False)
     said = (*(watched.lines() if watched else ()), *_outcomes(expected, actual))
-    return _with(found, stopped, said)
+    return replace(found, stopped="; ".join(stopped), lines=said)
 
 
-def apart_from_stored(replay: Replay, actual: Session, progress: Progress | None = None) -> Apart:
+def distance_from_stored(replay: Replay, actual: Session, progress: Progress | None = None) -> TrajectoryDistance:
     """Step a run on to the end of a recording, and measure at those of its ticks whose states the recording stores."""
     stopped: list[str] = []
 
@@ -149,11 +151,10 @@ def apart_from_stored(replay: Replay, actual: Session, progress: Progress | None
                 yield recorded, actual.world
 
     with np.errstate(over="ignore", invalid="ignore"):
-        found = _measured(pairs(), True)
-    return _with(found, stopped, ())
+        return replace(_measured(pairs(), True), stopped="; ".join(stopped))
 
 
-def apart_as_stored(first: Replay, second: Replay) -> Apart:
+def distance_as_stored(first: Replay, second: Replay) -> TrajectoryDistance:
     """Measure two recordings at the ticks whose states both store."""
     shared = sorted(first.states.keys() & second.states.keys())
     pairs = ((recorded_world(first, tick), recorded_world(second, tick)) for tick in shared)
@@ -168,47 +169,57 @@ def recorded_world(replay: Replay, tick: int) -> World | None:
     stored = replay.states[tick]
     world = build_world(replay.level)
     try:
-        restore(world, decode_state(replay.level, tick, stored.arrays, stored.settings, stored.joined))
+        restore(world, stored.of(replay.level, tick))
     except ValueError:
-        return _placed(world, stored.arrays.get("position", ""), tick)
+        # As built, with other places; what joined it stays out.
+        try:
+            position = decode_array(BY_STORED["position"], stored.arrays.get("position", ""))
+        except ValueError:
+            return None
+        count = min(len(position), world.particle_count)
+        world.position[:count] = position[:count]
+        world.tick = tick
+        return world
     name_added(world)
     return world
 
 
-def _placed(world: World, text: str, tick: int) -> World | None:
-    """A world as built, with other places; what joined it stays out."""
-    try:
-        position = decode_array(BY_STORED["position"], text)
-    except ValueError:
-        return None
-    count = min(len(position), world.particle_count)
-    world.position[:count] = position[:count]
-    world.tick = tick
-    return world
+def distances(a: World | Snapshot, b: World | Snapshot, slots: tuple[Slots, Slots] | None = None) -> Floats:
+    """Distances (n,) [m] of the particles that two states show, 0 of others; infinite where one is nowhere.
+
+    slots: of the same particles in both, None: all, in the same order.
+    """
+    one, other = (a.position, b.position) if slots is None else (a.position[slots[0]], b.position[slots[1]])
+    shown = shown_particles(a), shown_particles(b)
+    both = shown[0] & shown[1] if slots is None else shown[0][slots[0]] & shown[1][slots[1]]
+    with np.errstate(over="ignore", invalid="ignore"):
+        far = np.where(both, lengths(one - other), 0.0)
+    far[np.isnan(far)] = np.inf
+    return far
 
 
-class _SameParticles:
-    """Which particles of two worlds are the same, found anew when their topology changes."""
+class SameParticles:
+    """Which particles of two worlds are the same by name, found anew when their topology changes. alone: how many one
+    of the two shows alone.
+    """
 
     def __init__(self) -> None:
         self._slots: tuple[Slots, Slots] | None = None
         self._key: tuple[Any, ...] = ()
-        self._away: NDArray[np.bool_] = np.zeros(0, dtype=np.bool_)
         self.alone = 0
 
-    def distances(self, a: World, b: World) -> tuple[NDArray[np.float64], tuple[Slots, Slots] | None]:
-        """Squares of the distances of all particles that both have, and their slots in both, None: the same ones."""
+    def farthest(self, a: World, b: World) -> tuple[float, tuple[int, int]]:
+        """The largest distance [m] of a particle that both have, and its slots in both."""
         key = (id(a), a.topology_version, a.hand_version, id(b), b.topology_version, b.hand_version)
         if key != self._key:
             self._key = key
             self._pair(a, b)
-        if self._slots is None:
-            way = a.position - b.position
-        else:
-            way = a.position[self._slots[0]] - b.position[self._slots[1]]
-        squares: NDArray[np.float64] = way[:, 0] * way[:, 0] + way[:, 1] * way[:, 1]
-        squares[self._away] = 0.0
-        return squares, self._slots
+        far = distances(a, b, self._slots)
+        if not len(far):
+            return 0.0, (0, 0)
+        place = int(np.argmax(far))
+        slots = self._slots
+        return float(far[place]), (place, place) if slots is None else (int(slots[0][place]), int(slots[1][place]))
 
     def _pair(self, a: World, b: World) -> None:
         names = a.particle_names
@@ -216,36 +227,31 @@ class _SameParticles:
             self._slots = None
         else:
             known = {name: slot for slot, name in enumerate(b.particle_names)}
-            left = [slot for slot, name in enumerate(names) if name in known]
-            right = [known[names[slot]] for slot in left]
-            self._slots = np.array(left, dtype=np.int64), np.array(right, dtype=np.int64)
+            ours = [slot for slot, name in enumerate(names) if name in known]
+            theirs = [known[names[slot]] for slot in ours]
+            self._slots = np.array(ours, dtype=np.int64), np.array(theirs, dtype=np.int64)
         shown = shown_particles(a), shown_particles(b)
         both = shown[0] & shown[1] if self._slots is None else shown[0][self._slots[0]] & shown[1][self._slots[1]]
-        self._away = ~both
         self.alone = int(sum(map(np.count_nonzero, shown)) - 2 * np.count_nonzero(both))
 
 
-def _measured(pairs: Iterable[tuple[World, World]], stored: bool) -> Apart:
-    same = _SameParticles()
+def _measured(pairs: Iterable[tuple[World, World]], stored: bool) -> TrajectoryDistance:
+    same = SameParticles()
     ticks: list[int] = []
     series: list[float] = []
-    farthest, particle, both, tick = 0.0, "", (0, 0), 0
+    most, particle, both, tick = 0.0, "", (0, 0), 0
     for a, b in pairs:
-        squares, slots = same.distances(a, b)
-        place = int(np.argmax(squares)) if len(squares) else -1
-        largest = float(squares[place]) if place >= 0 else 0.0
-        largest = math.inf if math.isnan(largest) else math.sqrt(largest)
-        if largest > farthest:
-            both = (place, place) if slots is None else (int(slots[0][place]), int(slots[1][place]))
-            farthest, particle, tick = largest, b.particle_names[both[1]], b.tick
+        far, slots = same.farthest(a, b)
+        if far > most:
+            most, particle, both, tick = far, b.particle_names[slots[1]], slots, b.tick
         ticks.append(b.tick)
-        series.append(largest)
+        series.append(far)
     different = [number for number, distance in enumerate(series) if distance > 0.0]
     heals = different[-1] + 1 if different and different[-1] + 1 < len(series) else None
-    return Apart(
+    return TrajectoryDistance(
         first=ticks[different[0]] if different else None,
         heals=None if heals is None else ticks[heals],
-        farthest=farthest,
+        farthest=most,
         particle=particle,
         slots=both,
         tick=tick,
@@ -260,12 +266,8 @@ def _measured(pairs: Iterable[tuple[World, World]], stored: bool) -> Apart:
 def _course(ticks: Sequence[int], series: Sequence[float], first: int) -> tuple[tuple[int, float], ...]:
     """Some ticks from the first that differs to the last, with the distance at each."""
     last = len(series) - 1
-    places = sorted({first + round(part * (last - first) / (TOLD - 1)) for part in range(TOLD)})
+    places = sorted({first + round(part * (last - first) / (COURSE - 1)) for part in range(COURSE)})
     return tuple((ticks[place], series[place]) for place in places)
-
-
-def _with(found: Apart, stopped: Sequence[str], lines: Iterable[str]) -> Apart:
-    return replace(found, stopped="; ".join(stopped), lines=tuple(lines))
 
 
 class _WatchedRuns:

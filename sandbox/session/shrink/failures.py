@@ -1,7 +1,8 @@
-"""Kinds of failures: a check, an exception, frozen particles, something that leaves a box, a lost goal, energy."""
+"""Failure: something that goes wrong in a run, told tick by tick, so that smaller runs can be tried for the same."""
 
 import traceback
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,67 @@ from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.analysis.query import shown_particles
+from sandbox.physics.snapshot import Snapshot, hash_by_array
+from sandbox.physics.state import BY_STORED
 from sandbox.session.check_run import CheckWatch
+from sandbox.session.commands.records import to_record
+from sandbox.session.compare.distance import SameParticles
+from sandbox.session.compare.divergence import first_difference
 from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.session import Session
-from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
+
+
+class FailureError(ValueError):
+    """A failure that cannot be looked for in a level; one line."""
+
+
+@dataclass(frozen=True, repr=False)
+class FailureSeen:
+    """A failure that was seen. failure: this very one, which smaller runs must have; text: what is wrong, a line."""
+
+    failure: "Failure"
+    text: str
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+class FailureWatch:
+    """Looks for a failure in one run. is_over: whether it cannot come any more, so that the run may end."""
+
+    is_over = False
+
+    def before(self) -> None:
+        """Look at the state that the next tick begins with; its commands are carried out."""
+
+    def after(self) -> FailureSeen | None:
+        """Look at the state that a tick has ended with; what has failed in it."""
+        return None
+
+    def keep(self) -> Any:
+        """All that it remembers of the run until now, for a watch of another run that goes on from the same state."""
+        return None
+
+
+class Failure(ABC):
+    """What goes wrong; a value that other processes can be given. Its text says it in a few words.
+
+    beyond: ticks after the end of a recording in which it may show.
+    """
+
+    beyond = 0
+
+    @abstractmethod
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        """FailureWatch a run from its beginning, or from a state at which another watch gave what it kept.
+
+        Raises FailureError where the level has nothing of the kind.
+        """
+
+    def raised(self, error: Exception) -> FailureSeen | None:
+        """What has failed where a tick raises an exception; None: that is another failure than this one."""
+        return None
+
 
 Box = tuple[float, float, float, float]
 
@@ -199,6 +257,75 @@ class _EnergyWatch(FailureWatch):
 
     def keep(self) -> float:
         return self._grown
+
+
+@dataclass(frozen=True)
+class Diverges(Failure):
+    """A run differs from the one with the same commands on another level.
+
+    array: the first that differs, "": any; those in which the two differ from the beginning do not count. apart: it is
+    no difference of bits, but a particle is further than so [m] from where it is on the other level.
+    """
+
+    level: Level = field(repr=False)
+    array: str = ""
+    apart: float | None = None
+
+    def __str__(self) -> str:
+        if self.apart is not None:
+            return f"a particle comes more than {self.apart:g} m away from where it is on the other level"
+        return f"the runs on both levels differ, first in {self.array or 'any array'}"
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        return _PairWatch(self, session, kept)
+
+
+class _PairWatch(FailureWatch):
+    def __init__(self, failure: Diverges, session: Session, kept: tuple[Snapshot, frozenset[str]] | None) -> None:
+        self._failure, self._session = failure, session
+        self._other = Session(failure.level, start=kept[0] if kept else None)
+        self._same = SameParticles()
+        # How much of the log the other has carried out.
+        self._done = len(session.history.log)
+        self._aside = kept[1] if kept else frozenset(self._differing())
+
+    def _differing(self) -> list[str]:
+        ours, theirs = hash_by_array(self._session.world), hash_by_array(self._other.world)
+        return [name for name in BY_STORED if ours.get(name) != theirs.get(name)]
+
+    def before(self) -> None:
+        log = self._session.history.log
+        for entry in log[self._done :]:
+            if not entry.implied:
+                record = to_record(entry.command, self._session.world)
+                self._other.attempt(record, entry.gesture)
+        self._done = len(log)
+        self._other.advance()
+        self._other.take_messages()
+
+    def after(self) -> FailureSeen | None:
+        if self._failure.apart is not None:
+            return self._far_apart(self._failure.apart)
+        found = next((name for name in self._differing() if name not in self._aside), None)
+        if found is None:
+            return None
+        self.is_over = True
+        if self._failure.array not in ("", found):
+            return None
+        session, column = self._session, BY_STORED[found]
+        told = first_difference(session.tick, found, getattr(session.world, column.name), self._other.world)
+        return FailureSeen(Diverges(self._failure.level, found), f"diverged at {told}")
+
+    def _far_apart(self, bound: float) -> FailureSeen | None:
+        ours, theirs = self._session.world, self._other.world
+        distance, slots = self._same.farthest(ours, theirs)
+        if distance <= bound:
+            return None
+        text = f"{ours.particle_names[slots[0]]} is {distance:.3g} m from where it is on the other level"
+        return FailureSeen(self._failure, f"tick {ours.tick}: {text}")
+
+    def keep(self) -> tuple[Snapshot, frozenset[str]]:
+        return self._other.snapshot(), self._aside
 
 
 def usual_failures(level: Level) -> tuple[Failure, ...]:

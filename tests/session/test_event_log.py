@@ -8,10 +8,17 @@ from sandbox import Session, load_level
 from sandbox.bodies import parse_level
 from sandbox.cli import main
 from sandbox.commands import CutSprings, Grab, Pin, Release, Unpin, from_record
-from sandbox.session.events import touch_watch
-from sandbox.session.events.happening import KINDS, Happening, grouped, shortened
-from sandbox.session.events.story import happenings, story, watched_story
-from sandbox.session.events.touch_watch import TouchWatch
+from sandbox.session import event_log
+from sandbox.session.event_log import (
+    KINDS,
+    Event,
+    TouchWatch,
+    event_log_of,
+    events_of,
+    grouped,
+    shortened,
+    watched_event_log,
+)
 
 GROUND = {"id": "ground", "polygon": [[-5, -1], [5, -1], [5, 0], [-5, 0]]}
 BALL = {"id": "ball", "position": [0, 1.0], "radius": 0.2, "mass": 2.0}
@@ -29,12 +36,12 @@ def lines_of(found, kinds=None):
 def test_who_touched_whom_is_told_once_with_how_often_and_when_they_parted():
     run = Session(level_of(particles=[BALL | {"restitution": 0.9}]))
     watched = TouchWatch(())
-    (told,) = watched_story(run, 400, watch=watched)
+    (told,) = watched_event_log(run, 400, watch=watched)
     times = watched.touches["ball", "ground"].times
     assert times > 2 and told.text == f"ball and ground touched ({times} times in all)"
     assert told.tick == pytest.approx((2 * 0.8 / 9.81) ** 0.5 * 60, abs=2)
     run.world.change("velocity", [0.0, 9.0], 0)
-    told = watched_story(run, 430, watch=watched)
+    told = watched_event_log(run, 430, watch=watched)
     assert lines_of(told, ["part"]) == [(400, "ball and ground parted")] or told[-1].text == "ball and ground parted"
 
 
@@ -52,15 +59,15 @@ def test_hands_pins_and_cuts_are_told_by_name_and_what_was_undone_never_happened
     run.submit(CutSprings((2,)))
     run.submit(CutSprings((7, 8)))
     run.advance()
-    assert lines_of(happenings(run)) == [
+    assert lines_of(events_of(run)) == [
         (0, "rope.5 was grabbed"), (30, "rope.5 was let go"), (30, "rope.5 was pinned"), (31, "rope.5 was unpinned"),
         (31, "rope:2 was cut"), (31, "2 springs of rope were cut"),
     ]  # fmt: skip
     run.undo()
     run.advance()
-    assert lines_of(happenings(run))[-1] == (31, "rope:2 was cut")
+    assert lines_of(events_of(run))[-1] == (31, "rope:2 was cut")
     run.seek(20)
-    assert lines_of(happenings(run)) == [(0, "rope.5 was grabbed")]
+    assert lines_of(events_of(run)) == [(0, "rope.5 was grabbed")]
 
 
 def test_breaks_stay_known_after_time_travel_and_many_share_a_line():
@@ -70,15 +77,15 @@ def test_breaks_stay_known_after_time_travel_and_many_share_a_line():
     first = run.tick
     for _ in range(120):
         run.advance()
-    told = happenings(run)
+    told = events_of(run)
     assert told[0].tick == first and {each.kind for each in told} == {"break"} and len(told) > 10
-    (line,) = story(run)
+    (line,) = event_log_of(run)
     assert line.text == f"{len(told)} springs of deck broke" and (line.tick, line.last) == (first, told[-1].tick)
     run.seek(first - 1)
-    assert happenings(run) == []
+    assert events_of(run) == []
     while run.tick < told[-1].tick:
         run.advance()
-    assert happenings(run) == told
+    assert events_of(run) == told
 
 
 def test_counting_zones_checkpoints_and_winning_are_told():
@@ -93,7 +100,7 @@ def test_counting_zones_checkpoints_and_winning_are_told():
         ],
     )  # fmt: skip
     run = Session(level)
-    told = watched_story(run, 90)
+    told = watched_event_log(run, 90)
     entered = run.world.rule_first[0]
     assert lines_of(told, ["enter", "count", "checkpoint", "win", "lose", "rule"]) == [
         (entered, "ball entered basket"), (entered, "score is 2"), (entered, "checkpoint (in)"),
@@ -105,7 +112,7 @@ def test_what_the_quarantine_froze_is_told_by_name():
     run = Session(level_of(particles=[BALL]))
     run.world.velocity[0] = float("nan")
     run.advance()
-    assert lines_of(happenings(run)) == [(1, "ball went out of bounds and was frozen")]
+    assert lines_of(events_of(run)) == [(1, "ball went out of bounds and was frozen")]
 
 
 @pytest.mark.parametrize(
@@ -124,16 +131,14 @@ def test_every_other_command_is_a_line_of_plain_words(record):
     run = Session(load_level("jelly_pile"))
     run.submit(from_record(record, run.world))
     run.advance()
-    (told,) = happenings(run)
+    (told,) = events_of(run)
     assert "_" not in told.text and told.kind == record["type"]
 
 
 def test_many_alike_are_joined_and_other_lines_are_never_dropped():
-    touches = [
-        Happening(tick, tick, "touch", (f"ball {tick}", "pit"), f"ball {tick} and pit touched") for tick in range(9)
-    ]
-    far = Happening(600, 600, "touch", ("ball 1", "wall"), "ball 1 and wall touched")
-    broke = [Happening(5, 5, "break", ("deck",), "deck:1 broke")]
+    touches = [Event(tick, tick, "touch", (f"ball {tick}", "pit"), f"ball {tick} and pit touched") for tick in range(9)]
+    far = Event(600, 600, "touch", ("ball 1", "wall"), "ball 1 and wall touched")
+    broke = [Event(5, 5, "break", ("deck",), "deck:1 broke")]
     told = grouped([*touches, far, *broke], 60)
     assert [each.text for each in told] == [
         "pit began to touch 9 things: ball 0, ball 1, ball 2 and 6 more", "deck:1 broke", "ball 1 and wall touched"
@@ -147,10 +152,10 @@ def test_many_alike_are_joined_and_other_lines_are_never_dropped():
 
 
 def test_memory_is_bounded_by_pairs(monkeypatch):
-    monkeypatch.setattr(touch_watch, "MOST_PAIRS", 5)
+    monkeypatch.setattr(event_log, "MOST_PAIRS", 5)
     run = Session(load_level("jelly_pile"))
     watch = TouchWatch(())
-    told = watched_story(run, 240, watch=watch)
+    told = watched_event_log(run, 240, watch=watch)
     assert len(watch.touches) == 5 and watch.unlisted > 0
     assert told[-1].kind == "unlisted" and "not listed" in told[-1].text
 
@@ -207,4 +212,4 @@ def test_info_of_a_level_runs_it_and_of_what_is_neither_says_so(tmp_path, capsys
 
 def test_every_kind_is_named():
     run = Session(load_level("truck_bridge"))
-    assert {each.kind for each in watched_story(run, 300)} <= set(KINDS)
+    assert {each.kind for each in watched_event_log(run, 300)} <= set(KINDS)

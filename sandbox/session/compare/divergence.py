@@ -1,7 +1,8 @@
-"""Divergence: the first bit in which two runs differ, and how it is told."""
+"""The first bit in which two states differ: where it is, whose value, and how that is reported."""
 
+import hashlib
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, assert_never
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import row_names, slot_name
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.snapshot import Snapshot, canonical_bytes
+from sandbox.physics.snapshot import Snapshot, array_hash, canonical_bytes
 from sandbox.physics.state import BY_STORED, OF_RULES, Family
 from sandbox.physics.world import World
 from sandbox.session.probe import ADDED
@@ -117,6 +118,21 @@ def number_text(value: Any) -> str:
     return f"{value}  {value:#x}" if type(value) is int else str(value)
 
 
+def first_divergence(expected: World | Snapshot, world: World) -> Divergence | None:
+    """The first bit, in the order of hashing, in which a world differs from an expected state; None where none does.
+
+    What the two have of arrays that are as usual, and so in no hash, is no difference.
+    """
+    for stored, column in BY_STORED.items():
+        wanted, found = getattr(expected, column.name), getattr(world, column.name)
+        if wanted.tobytes() == found.tobytes() or canonical_bytes(wanted) == canonical_bytes(found):
+            continue
+        if array_hash(column, wanted) != array_hash(column, found):
+            known = expected if isinstance(expected, World) else None
+            return first_difference(world.tick, stored, wanted, world, known)
+    return settings_difference(world.tick, expected.settings, world.settings)
+
+
 def settings_difference(tick: int, wanted: WorldSettings, found: WorldSettings) -> Divergence | None:
     """The settings in which two worlds differ, by name; None where they are equal."""
     names = [each.name for each in fields(WorldSettings) if getattr(wanted, each.name) != getattr(found, each.name)]
@@ -214,3 +230,50 @@ def differing_particle(divergence: Divergence, state: Snapshot) -> int | None:
         case _:
             assert_never(column.family)
     return int(owners[slot]) if slot < len(owners) else None
+
+
+# Bytes that are hashed before it is given up: a second or two.
+_MOST_WORK = 1_500_000_000
+# Neighbours of a number that are tried, in units of its last place.
+_NEIGHBOURS = 8
+
+
+def array_of_hash(found: NDArray[Any], fits: Callable[[str], bool]) -> NDArray[Any] | None:
+    """The array that differs from the one found in a single number, by a few last places or in one bit; else None.
+
+    fits: whether an array whose hash has these digits (see `hash_by_array`) is the recorded one.
+    """
+    data, size = canonical_bytes(found), found.dtype.itemsize
+    numbers = np.frombuffer(data, dtype=f"<u{size}")
+    work = 0
+    for change in _likely_changes(8 * size):
+        changed = change(numbers)
+        before = hashlib.blake2b(digest_size=8)
+        for place, number in enumerate(changed):
+            end = (place + 1) * size
+            attempt = before.copy()
+            attempt.update(number.tobytes() + data[end:])
+            if fits(attempt.hexdigest()):
+                wanted = numbers.copy()
+                wanted[place] = number
+                return wanted.view(found.dtype.newbyteorder("<")).astype(found.dtype).reshape(found.shape)
+            before.update(data[end - size : end])
+            work += len(data) - end + size
+            if work > _MOST_WORK:
+                return None
+    return None
+
+
+def _likely_changes(bits: int) -> Iterator[Callable[[NDArray[Any]], NDArray[Any]]]:
+    """What may have become of numbers of this many bits, read as unsigned, the likeliest first."""
+
+    def moved(step: int) -> Callable[[NDArray[Any]], NDArray[Any]]:
+        return lambda numbers: numbers + numbers.dtype.type(step % 2**bits)
+
+    def flipped(bit: int) -> Callable[[NDArray[Any]], NDArray[Any]]:
+        return lambda numbers: numbers ^ numbers.dtype.type(1 << bit)
+
+    yield moved(1)
+    yield moved(-1)
+    yield from (flipped(bit) for bit in range(bits))
+    yield from (moved(sign * step) for step in range(2, _NEIGHBOURS + 1) for sign in (1, -1))

@@ -1,7 +1,10 @@
 """One run of a sweep, and its measurements."""
 
+import logging
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Generator, Sequence
+from concurrent.futures import as_completed
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
@@ -14,10 +17,82 @@ from sandbox.physics.world import World
 from sandbox.session.check_run import CheckRun, CheckWatch, check_runs
 from sandbox.session.commands import SetCoefficients
 from sandbox.session.session import Session
-from sandbox.session.sweep.grid import CD, CS, SweepError, SweepRequest, Value, case_level
+from sandbox.session.sweep.grid import CD, CS, SweepError, SweepGrid, SweepRequest, Value, case_level
+from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 # Whatever is faster [m/s] has blown up: nothing that a person builds gets there.
 FASTEST = 1e4
+# The address that stands for a cluster of this machine, for as long as the sweep takes.
+LOCAL = "local"
+# How long a scheduler may take to answer [s], and how often a run is begun again whose worker was lost.
+PATIENCE, RETRIES = 30.0, 10
+
+
+def swept(grid: SweepGrid, known: Collection[int], processes: int) -> Generator[tuple[int, list[Any]], None, None]:
+    """Run the unfinished points; number and row of each as it ends, in any order.
+
+    Close it if not all are wanted. Raises SweepError, and OSError where a process is gone.
+    """
+    missing = missing_points(grid, known)
+    if processes == 1 or len(missing) < 2:
+        for number in missing:
+            yield number, run_case(grid.request, grid.cases[number])
+        return
+    with worker_pool(processes) as workers:
+        with interrupts_ignored():
+            numbers = {workers.submit(run_case, grid.request, grid.cases[number]): number for number in missing}
+        for done in as_completed(numbers):
+            yield numbers[done], done.result()
+
+
+def swept_by_dask(
+    grid: SweepGrid, known: Collection[int], address: str, workers: int
+) -> Generator[tuple[int, list[Any]], None, None]:
+    """Run the points that are not known; number and row of each as it ends, in any order, each once.
+
+    address: of a scheduler, or "local" for a cluster of `workers` processes. Other workers run the points of a lost
+    worker. Close it if not all are wanted. Raises SweepError, OSError where no scheduler answers, ImportError without
+    dask.
+    """
+    from distributed import Client, Future, LocalCluster, as_completed
+    from distributed.scheduler import KilledWorker
+
+    missing = missing_points(grid, known)
+    if not missing:
+        return
+    with ExitStack() as stack:
+        try:
+            with interrupts_ignored():
+                target: Any = address
+                if address == LOCAL:
+                    # It tells of every worker that is lost, which is no fault of the sweep.
+                    target = stack.enter_context(
+                        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None,
+                                     silence_logs=logging.CRITICAL)
+                    )  # fmt: skip
+                client = stack.enter_context(Client(target, timeout=PATIENCE, set_as_default=False))
+        except (OSError, TimeoutError, ValueError) as error:
+            raise OSError(0, f"no scheduler of dask answers ({error})", address) from None
+        # Keys of this sweep alone: another one's rows are never taken for these.
+        numbers: dict[Future, int] = {
+            client.submit(run_case, grid.request, grid.cases[number], pure=False, retries=RETRIES): number
+            for number in missing
+        }
+        try:
+            for done in as_completed(list(numbers), loop=client.loop):
+                yield numbers.pop(done), done.result()
+                done.release()
+        except KilledWorker as error:
+            raise OSError(0, f"workers of dask were lost again and again ({error})", address) from None
+        except ModuleNotFoundError as error:
+            raise SweepError(f"a worker of dask lacks what the sweep needs: {error}") from None
+        finally:
+            client.cancel(list(numbers))
+
+
+def missing_points(grid: SweepGrid, known: Collection[int]) -> list[int]:
+    """Numbers of the points that are not known, in order."""
+    return sorted(set(range(grid.runs)) - set(known))
 
 
 def run_case(request: SweepRequest, case: Sequence[Value]) -> list[Any]:

@@ -1,1 +1,0 @@
-"""Links: a run in the fragment of an address."""
