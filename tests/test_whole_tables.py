@@ -14,7 +14,6 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from sandbox.session.compare.divergence import differing_particle, first_difference
 
 import sandbox
 from sandbox.app.draw import scene, textures
@@ -54,6 +53,7 @@ from sandbox.session import event_log
 from sandbox.session.commands import Grab
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.records import ScriptLine
+from sandbox.session.compare.divergence import differing_particle, first_difference
 from sandbox.session.replay.recording import _place as place_of
 from sandbox.session.session import Session
 from tests.support.rules_level import answering, run

@@ -2,13 +2,13 @@
 
 import pygame
 import pytest
-from sandbox.session.compare.comparison import verify
 
 from sandbox.app.draw.colours import ACCENT, WARNING, packed
 from sandbox.app.play.hand_labels import newtons, text_of
 from sandbox.app.play.stage import Stage
 from sandbox.physics.analysis.applied_forces import Pull
 from sandbox.session.commands import Grab
+from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.tools.drag import STRENGTHS
 from tests.app.conftest import small_level

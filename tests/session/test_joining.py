@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from sandbox.session.compare.comparison import verify
 
 from sandbox.cli import main
 from sandbox.physics.marks import ALL_GROUPS
@@ -23,6 +22,7 @@ from sandbox.session.commands import (
     SetInflation,
     apply,
 )
+from sandbox.session.compare.comparison import verify
 from sandbox.session.probe import Probe, dump
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
