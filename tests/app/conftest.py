@@ -7,6 +7,7 @@ os.environ["SDL_AUDIODRIVER"] = "dummy"
 os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 
 import json
+import time
 
 import pygame
 import pytest
@@ -24,6 +25,8 @@ from tests.support.person import VirtualScreen
 FRAME = 1 / 60
 # In so many frames all is measured.
 MOST_FRAMES = 3_000
+# How much later each look at the clock is [s]: what works by slices, until its time is up, does as much on any machine.
+LOOK = 5e-5
 
 
 def small_level(**changes):
@@ -43,6 +46,47 @@ def small_level(**changes):
         **changes,
     }  # fmt: skip
     return parse_level(json.dumps(data).encode(), "test")
+
+
+class Clock:
+    """The time that the app goes by here: only frames and looks let it pass, however long the machine takes."""
+
+    def __init__(self):
+        self._now = 1.0
+
+    def pass_on(self, seconds):
+        """Let so much time pass."""
+        self._now += seconds
+
+    def look(self):
+        """What time it is [s]."""
+        self._now += LOOK
+        return self._now
+
+    def ticks(self):
+        """What time it is [ms]; looks at it let none pass."""
+        return int(1000 * self._now)
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch):
+    """In place of the machine's clocks: no test of the app depends on what else the machine has to do."""
+    made, frame = Clock(), App.frame
+
+    def timed_frame(app, frame_time):
+        made.pass_on(frame_time)
+        frame(app, frame_time)
+
+    monkeypatch.setattr(App, "frame", timed_frame)
+    monkeypatch.setattr(time, "perf_counter", made.look)
+    monkeypatch.setattr(pygame.time, "get_ticks", made.ticks)
+    return made
+
+
+@pytest.fixture(autouse=True)
+def a_window_that_closes_takes_no_other_along(monkeypatch):
+    """One is open for all tests of a module, while others come and go: quitting the display would leave it invalid."""
+    monkeypatch.setattr(pygame.display, "quit", pygame.event.clear)
 
 
 class Driver:

@@ -195,8 +195,7 @@ def test_an_editor_that_has_said_what_it_found_rests_until_the_level_is_another(
     driver.app.frame(0.1)
     assert not driver.app.calm.has_come
     driver.editor.show_parts()
-    driver.frames()
-    assert driver.editor.moves == (len(driver.editor.side.page._unfilled) > 0)
+    assert let_calm_come(driver) and len(driver.editor.side.page._unfilled) == 0
 
 
 def test_the_tour_pulses_until_it_is_over(edit):
