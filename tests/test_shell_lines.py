@@ -19,10 +19,10 @@ NOT_RUN = {
     r"(\.venv/bin/)?python -m (pytest|tests)\b.*|pytest\b.*": "runs these tests",
 }
 MOST_NOT_RUN = 3
-# Pages that show one line many times, each with another level: so many of them are tried in the usual run.
-SAMPLE = 2
 # Lines of many runs.
 LONG = re.compile(r"sandbox sweep .*|.* levels/\*\.json .*")
+# Files that a line writes.
+WRITTEN = re.compile(r"(?:-o|--record|>) (\S+)|^(?:cp|python) .*?(\S+)$")
 LINES = {page: list(lines_of(page)) for page in pages()}
 ROPE = ROOT / "levels" / "rope.json"
 
@@ -34,30 +34,49 @@ def is_run(line):
     return has_program and not any(re.fullmatch(pattern, line.text) for pattern in NOT_RUN)
 
 
-def with_what_they_need(windows, usual):
-    """Lines that open windows, each after those before it on the page that name its file: they may write it."""
-    found = []
-    for line in windows:
-        files = {word for word in line.text.split() if "." in word}
-        found += [made for made in usual if made.number < line.number and files & set(made.text.split())]
-        found.append(line)
-    return list(dict.fromkeys(found))
+def kind_of(window):
+    """What a line that opens a window has in common with others: its words, but for which level, file or body."""
+    return tuple(word if word.startswith("-") or place < 2 else "" for place, word in enumerate(window.text.split()))
+
+
+def firsts(key, lines):
+    """Lines before which none has the same key."""
+    found = {}
+    for line in lines:
+        found.setdefault(key(line), line)
+    return set(found.values())
+
+
+def with_what_they_need(chosen, usual):
+    """Chosen lines in the order of their page, with those that write files which later ones name."""
+    found, named = [], set()
+    for line in sorted({*chosen, *usual}, key=lambda line: -line.number):
+        written = {name for names in WRITTEN.findall(line.text) for name in names if name}
+        if line in chosen or written & named:
+            found.append(line)
+            named |= {word for word in line.text.split() if "." in word}
+    return found[::-1]
 
 
 def batches():
     """A test's worth of lines each: those of a page that print and write, that take long, and that open windows."""
-    found = []
+    found, all_lines = [], [line for lines in LINES.values() for line in lines if is_run(line)]
+    # Each text once by day, and each kind of window; pages as a whole, and other levels, where formats changed.
+    new = firsts(lambda line: line.text, all_lines)
+    tried = firsts(kind_of, [line for line in all_lines if line.opens_a_window])
     for page, lines in LINES.items():
         run = [line for line in lines if is_run(line)]
         windows = [line for line in run if line.opens_a_window]
         long = [line for line in run if LONG.fullmatch(line.text)]
         usual = [line for line in run if line not in windows and line not in long]
+        by_day = with_what_they_need([line for line in usual if line in new], usual)
         kinds = {
-            "": (usual, ()),
+            "": (by_day, ()),
+            ", whole": (usual if usual != by_day else [], pytest.mark.whole_world),
             ", long": (long, pytest.mark.whole_world),
-            ", windows": (with_what_they_need(windows[:SAMPLE], usual), needs_a_screen),
+            ", windows": (with_what_they_need([line for line in windows if line in tried], usual), needs_a_screen),
             ", more windows": (
-                with_what_they_need(windows[SAMPLE:], usual),
+                with_what_they_need([line for line in windows if line not in tried], usual),
                 (needs_a_screen, pytest.mark.whole_world),
             ),
         }

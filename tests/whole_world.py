@@ -15,10 +15,10 @@ from tests.quick import ROOT, files_since, git, left_branch
 # Where kernels, formats and what proves them lie, and what they are compiled with.
 WATCHED = (
     "sandbox/physics/", "sandbox/app/draw/raster/", "sandbox/level/", "sandbox/session/",
-    "sandbox/page/", "tests/determinism/", "pyproject.toml",
+    "sandbox/page/", "levels/", "tests/determinism/", "pyproject.toml",
 )  # fmt: skip
 # What a file of tests says in which there are such tests.
-MARKS = re.compile(r"mark\.whole_world|part_and_whole")
+MARKS = re.compile(r"mark\.whole_world|(part|some)_and_whole")
 # So much of main's time is looked at where nobody says since when [s]: what somebody pushes at once is made in hours.
 LAST = 12 * 3600
 

@@ -421,7 +421,7 @@ class EditingMachine(RuleBasedStateMachine):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("examples", part_and_whole(30, EXAMPLES))
+@pytest.mark.parametrize("examples", part_and_whole(10, EXAMPLES))
 def test_any_edits_can_be_undone_and_redone_and_leave_a_level_that_can_be_saved(examples):
     run_state_machine_as_test(
         EditingMachine,

@@ -17,6 +17,8 @@ NAMES = ("chromium-headless-shell", "chrome-headless-shell", "chromium", "chromi
 FLAGS = (
     "--headless", "--no-sandbox", "--remote-debugging-pipe", "--hide-scrollbars", "--no-first-run",
     "--autoplay-policy=user-gesture-required", "--disable-gpu",
+    # All pages in one process: kernels that one of them has compiled are there for the next.
+    "--renderer-process-limit=1", "--disable-site-isolation-trials",
     # A mouse, which a machine for tests has not: it hovers, and points finely.
     "--blink-settings=primaryHoverType=2,availableHoverTypes=2,primaryPointerType=4,availablePointerTypes=4",
 )  # fmt: skip
@@ -203,6 +205,10 @@ class Browser:
         features = [{"name": "prefers-color-scheme", "value": scheme}]
         tab.send("Emulation.setEmulatedMedia", features=features)
         return tab
+
+    def keep(self) -> None:
+        """Let the page that is open stay: the next one does not close it."""
+        self._target = None
 
     def send(self, method: str, given: dict[str, Any], session: str | None = None) -> Any:
         """What the browser answers. Raises RuntimeError where it cannot."""

@@ -1,6 +1,7 @@
 """axe-core finds nothing, and text is seen on what is drawn behind it, in both themes."""
 
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from tests.page.levels import level_page
 from tests.page.opened import opened
 from tests.page.site_server import served
 from tests.support.rules_level import answering
+from tests.support.wholes import some_and_whole
 
 THEMES = ("dark", "light")
 PHONE = {"width": 390, "height": 844, "is_phone": True}
@@ -36,8 +38,9 @@ def test_axe_finds_nothing_on_the_index(browser: Browser, index: str, scheme: st
     assert violations(browser.tab(scheme=scheme).open(f"{index}index.html")) == []
 
 
-@pytest.mark.parametrize("scheme", THEMES)
-@pytest.mark.parametrize("name", ["rope", "low_door"])
+@pytest.mark.parametrize(
+    ("name", "scheme"), some_and_whole([("rope", "dark"), ("low_door", "light")], product(("rope", "low_door"), THEMES))
+)
 def test_axe_finds_nothing_on_a_level_whatever_is_open(
     browser: Browser, tmp_path: Path, name: str, scheme: str
 ) -> None:
@@ -78,12 +81,8 @@ def _told(tab: Tab) -> None:
     tab.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
-# On the picture of each level; some of each kind in every run of tests.
-SOME = ("squeeze", "rope", "pinball", "crane")
-OTHERS = [pytest.param(name, marks=pytest.mark.whole_world) for name in LEVELS if name not in SOME]
-
-
-@pytest.mark.parametrize("name", [*SOME, *OTHERS])
+# On the picture of each level.
+@pytest.mark.parametrize("name", some_and_whole(("squeeze", "crane"), LEVELS))
 def test_every_text_is_read_on_what_is_drawn_behind_it(browser: Browser, tmp_path: Path, name: str) -> None:
     for size in ({}, PHONE):
         tab = opened(browser, tmp_path, page_of(load_level(name)), **size)

@@ -25,6 +25,7 @@ from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.page.in_node import NODE, tried_in_node
+from tests.support.wholes import some_and_whole
 
 LEVEL = "tumble_drum"
 NAN, INF = math.nan, math.inf
@@ -258,7 +259,7 @@ def those_that_may_be(world: World, records: list[Any]) -> Iterator[Any]:
 
 
 @needs_node
-@pytest.mark.parametrize("records", ["any", "bad", "one fault"])
+@pytest.mark.parametrize("records", some_and_whole(("bad", "one fault"), ("any", "bad", "one fault")))
 def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tmp_path):
     world = world_of()
     before = names_in(BEFORE, world)
@@ -315,7 +316,9 @@ MORE_LIMITED = {
 
 
 @needs_node
-@pytest.mark.parametrize("name", [*LIMITED, *MORE_LIMITED])
+@pytest.mark.parametrize(
+    "name", some_and_whole(("tumble_drum", "low_door", "pinball_score"), [*LIMITED, *MORE_LIMITED])
+)
 def test_page_and_desktop_answer_500_random_deeds_of_hands_in_the_same_words(name, tmp_path):
     def limited():
         level = read_level(next(path for path in shipped_levels() if path.stem == name))

@@ -16,6 +16,7 @@ from tests.page.firefox import Firefox, FirefoxTab
 from tests.page.levels import level_page
 from tests.page.opened import TICKED, VERDICT
 from tests.page.site_server import served
+from tests.support.wholes import some_and_whole
 
 TICKS = 300
 # Ropes, a car with motors, muscles, jellies, water, a belt.
@@ -34,7 +35,7 @@ def _opened(firefox: Firefox, folder: Path, name: str) -> FirefoxTab:
     return firefox.tab().open(page_address(file))
 
 
-@pytest.mark.parametrize("name", LEVELS)
+@pytest.mark.parametrize("name", some_and_whole(("suspension_car", "ferry"), LEVELS))
 def test_firefox_comes_to_the_bits_of_the_desktop(firefox: Firefox, tmp_path: Path, name: str) -> None:
     tab = _opened(firefox, tmp_path, name)
     tab.evaluate(TICKED)

@@ -11,9 +11,8 @@ from sandbox.cli import main
 from sandbox.level.reading.files import shipped_levels
 from tests.page.browser import Browser, Tab
 from tests.page.opened import FRAMES
-from tests.page.site_server import served
+from tests.page.site_server import AT, served
 
-AT = "https://example.org/toys"
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 # All that has come of the page until now [bytes], and where from.
 COME = """performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation'))
@@ -36,13 +35,6 @@ CARD = """(() => {
   const { x, y, width, height } = document.querySelector('.cards a[href*=STEM]').getBoundingClientRect();
   return [x + width / 2, y + height / 2];
 })()"""
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("index")
-    assert main(["site", "-o", str(folder), "--address", AT]) == 0
-    return folder
 
 
 @pytest.fixture(scope="module")

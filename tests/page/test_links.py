@@ -9,7 +9,6 @@ import pytest
 from sandbox import Session, load_level
 from sandbox.app.share.links import link_to
 from sandbox.app.share.runs_for_pages import all_at_once
-from sandbox.cli import main
 from sandbox.commands import (
     AddBody,
     AddParticle,
@@ -33,6 +32,7 @@ from tests.page.browser import Browser, Tab
 from tests.page.opened import FRAMES, VERDICT
 from tests.page.site_server import served
 from tests.support.parts import furnished
+from tests.support.wholes import some_and_whole
 
 LEVELS = ("jelly_pile", "rope", "pinball", "truck_bridge", "newtons_cradle")
 SHAPES = ({"box": [0.8, 0.6]}, {"circle": 0.4}, {"polygon": [[0, 0], [0.9, 0.1], [0.7, 0.8], [0.3, 0.5], [0, 0.9]]})
@@ -93,11 +93,9 @@ def played(folder: Path, level: str, seed: int) -> Replay:
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory):
-    """Where a site of these levels is."""
-    folder = tmp_path_factory.mktemp("links")
-    assert main(["site", *LEVELS, "-o", str(folder)]) == 0
-    with served(folder) as at:
+def address(site):
+    """Where the site is."""
+    with served(site) as at:
         yield at
 
 
@@ -106,7 +104,7 @@ def _link(tab: Tab) -> str:
     return str(tab.evaluate("page.toy.link().then((fragment) => location.href.split('#')[0] + fragment)"))
 
 
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", some_and_whole(("jelly_pile", "pinball"), LEVELS))
 def test_a_run_goes_to_a_page_is_taken_over_and_comes_back(
     browser: Browser, address: str, tmp_path: Path, level: str
 ) -> None:

@@ -16,6 +16,7 @@ from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import SETTLED, START_OVER, opened, saved
 from tests.page.pointing import click, middle, tap, text
+from tests.support.wholes import some_and_whole
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 COMMANDS = "page.toy.run.commands.map(({ record }) => record.type)"
@@ -72,7 +73,7 @@ def test_a_cart_that_was_dropped_in_a_page_is_driven_there_by_its_keys_and_comes
     assert tab.faults == []
 
 
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("part", some_and_whole(("ball", "cart"), PARTS))
 def test_each_part_is_dropped_by_finger_where_it_taps(browser: Browser, tmp_path: Path, part: str) -> None:
     tab = _opened(browser, tmp_path, "jelly_pile", **PHONE)
     tap(tab, f"#part-{part}")
@@ -125,7 +126,7 @@ def test_a_part_is_dropped_by_the_cursor_of_keys(browser: Browser, tmp_path: Pat
     assert tab.evaluate(COMMANDS) == ["add_body", "add_body"]
 
 
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("part", some_and_whole(("ball", "cart"), PARTS))
 def test_a_part_that_hands_may_not_add_is_refused_over_the_level(browser: Browser, tmp_path: Path, part: str) -> None:
     tab = _opened(browser, tmp_path, "pinball_score")
     click(tab, f"#part-{part}")

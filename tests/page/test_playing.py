@@ -11,11 +11,12 @@ from sandbox.replay import read_replay, verify
 from tests.page.browser import Browser
 from tests.page.levels import LEVELS, level_page
 from tests.page.opened import START_OVER, opened, saved
+from tests.support.wholes import some_and_whole
 
 TICKS = 90
 
 
-@pytest.mark.parametrize("name", LEVELS)
+@pytest.mark.parametrize("name", some_and_whole(("suspension_car", "walker", "curtain"), LEVELS))
 def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
     browser: Browser, tmp_path: Path, name: str
 ) -> None:

@@ -1,5 +1,6 @@
 """What stands around a level leaves it free, on phones held either way, low windows and large ones."""
 
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import FRAMES, TICKED, opened
 from tests.page.pointing import click, middle, tap
+from tests.support.wholes import some_and_whole
 
 LEVELS = ("truck_course", "ferry", "egg_drop", "bridge_budget", "chain_of_events", "crane")
 PHONE, TURNED = (390, 844), (844, 390)
@@ -48,8 +50,9 @@ def covering(tab: Tab) -> list[Any]:
     return [*over, *beyond] if is_seen else ["level", left, top, right, bottom]
 
 
-@pytest.mark.parametrize("size", SIZES, ids=str)
-@pytest.mark.parametrize("name", LEVELS)
+@pytest.mark.parametrize(
+    ("name", "size"), some_and_whole([*zip(LEVELS, SIZES, strict=True)], product(LEVELS, SIZES)), ids=str
+)
 def test_bars_words_and_keys_leave_the_level_free(
     browser: Browser, tmp_path: Path, name: str, size: tuple[int, int]
 ) -> None:

@@ -13,17 +13,10 @@ from sandbox.level.reading.files import shipped_levels
 from tests.page.browser import Browser, page_address
 from tests.page.contrast import CONTRAST, LEAST_CONTRAST
 from tests.page.site_server import served
+from tests.support.wholes import some_and_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 LEVELS = [path.stem for path in shipped_levels()]
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole site, as `make site` writes it."""
-    folder = tmp_path_factory.mktemp("site")
-    assert main(["site", "--document", str(ROOT / "README.md"), "-o", str(folder)]) == 0
-    return folder
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +93,7 @@ def test_every_page_has_a_title_a_language_one_heading_and_words_for_its_picture
     assert len(titles) > len(LEVELS)
 
 
-@pytest.mark.parametrize("stem", LEVELS)
+@pytest.mark.parametrize("stem", some_and_whole(("rope", "hooke_comparison", "pinball_score", "ferry"), LEVELS))
 def test_a_level_plays_at_its_own_address(browser: Browser, address: str, stem: str) -> None:
     tab = browser.tab().open(f"{address}levels/{stem}.html")
     assert tab.evaluate("document.getElementById('error').textContent") == ""

@@ -1,5 +1,6 @@
 """Every shipped level with a goal is won in a page by what people do there: by mouse and keys, and by fingers alone."""
 
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from tests.page.levels import level_page
 from tests.page.opened import opened, saved
 from tests.page.pointing import text
 from tests.solutions import SOLUTIONS
+from tests.support.wholes import some_and_whole
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 # The words of the menu for what a solution gives in hertz, in order.
@@ -22,13 +24,11 @@ WORDS = {"squeeze": ["jelly", "firm"], "egg_drop": ["jelly"]}
 AFTER = 60.0
 
 # One that is won by a menu, and one by what is drawn.
-SOME = ("egg_drop", "bridge_budget")
-OTHERS = [pytest.param(name, marks=pytest.mark.whole_world) for name in SOLUTIONS if name not in SOME]
+SOME = ((ByFinger, "egg_drop"), (ByMouse, "bridge_budget"))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("level", [*SOME, *OTHERS])
-@pytest.mark.parametrize("by", [ByMouse, ByFinger])
+@pytest.mark.parametrize(("by", "level"), some_and_whole(SOME, product((ByMouse, ByFinger), SOLUTIONS)))
 def test_a_level_is_won_in_a_page_by_what_its_solution_does(
     browser: Browser, tmp_path: Path, by: type[Player], level: str
 ) -> None:

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.support.wants import needs
 
 KERNELS = """
@@ -56,6 +58,7 @@ WRONG = {
 }
 
 
+@pytest.mark.whole_world
 @needs("zig", importlib.util.find_spec("ziglang"))
 def test_what_cpp_leaves_undefined_ends_a_checked_run_and_is_named(tmp_path):
     (tmp_path / "tried.py").write_text(KERNELS)

@@ -9,6 +9,7 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy, steps_by_mass
 from sandbox.session.session import Session
 from sandbox.session.summary import run
+from tests.support.wholes import part_and_whole
 
 RADIUS = 0.04
 GROUND = {"id": "ground", "polyline": [[-20, 0], [20, 0]]}
@@ -69,7 +70,7 @@ def test_a_net_that_lies_on_the_ground_stays_on_it_and_gains_nothing(materials):
     assert np.abs(world.velocity[world.particle_active]).max() < 1.0
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.35])
+@pytest.mark.parametrize("angle", part_and_whole(0.35, 0.0))
 def test_a_large_block_lands_and_comes_to_lie_on_its_side(angle):
     session = session_of((0.8, 0.9), bodies=[block(5.0, angle)])
     world = session.world

@@ -17,6 +17,7 @@ from sandbox.session.session import Session
 from tests.support.play import play
 from tests.support.rope_level import rope_level
 from tests.support.version_1 import version_1
+from tests.support.wholes import part_and_whole
 
 TICKS, STATE_TICKS = 300, 60
 
@@ -193,13 +194,13 @@ def _slightly_wrong_step(world):
         world.velocity[9, 0] += 1e-9
 
 
-@pytest.mark.slow
-def test_any_changed_byte_is_refused_with_its_line(recorded, tmp_path):
+@pytest.mark.parametrize("count", part_and_whole(100, 400))
+def test_any_changed_byte_is_refused_with_its_line(recorded, tmp_path, count):
     data = recorded.read_bytes()
     starts = [0, *(place + 1 for place, byte in enumerate(data) if byte == 10)]
     generator = random.Random(7)
     changed = tmp_path / "changed.jsonl"
-    for place in [*(generator.randrange(len(data)) for _ in range(400)), len(data) - 1]:
+    for place in [*(generator.randrange(len(data)) for _ in range(count)), len(data) - 1]:
         flipped = data[place] ^ (1 << generator.randrange(8))
         changed.write_bytes(data[:place] + bytes([flipped]) + data[place + 1 :])
         with pytest.raises(ReplayError) as refusal:

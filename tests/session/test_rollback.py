@@ -16,13 +16,10 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.play import play
 from tests.support.rope_level import rope_level
+from tests.support.wholes import some_and_whole
 
 # Levels of many kinds of things whose ticks are quick; the others are tried with all kernels' tests.
-QUICK = ("rope", "newtons_cradle", "walker", "basket_throw", "marble_mill", "pinball", "squeeze", "truss_bridge")
-LEVELS = [
-    path.stem if path.stem in QUICK else pytest.param(path.stem, marks=pytest.mark.whole_world)
-    for path in shipped_levels()
-]
+LEVELS = some_and_whole(("rope", "walker", "basket_throw", "truss_bridge"), [path.stem for path in shipped_levels()])
 
 
 @pytest.fixture

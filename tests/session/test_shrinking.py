@@ -33,10 +33,12 @@ from sandbox.session.shrink.shrinker import Shrinker, shrinker_of
 from tests.support.interrupts import interrupts
 from tests.support.planted import CASES, edited
 from tests.support.rope_level import rope_level
+from tests.support.wholes import some_and_whole
 
 # A gesture of these is the cause; some need a second one.
 MOST_GESTURES = 3
-SLOW = (0, 1, 2, 3, 7)
+# Cases of every run of tests.
+QUICK = (5, 6, 9)
 LOW = [{"name": "high", "metric": "y", "particle": "rope.end", "always": [0, 20], "at_least": -7.0}]
 
 
@@ -69,7 +71,7 @@ def recorded(tmp_path):
 
 @pytest.mark.parametrize(
     "number",
-    [pytest.param(k, marks=pytest.mark.whole_world) if k in SLOW else k for k in range(len(CASES))],
+    some_and_whole(QUICK, range(len(CASES))),
     ids=lambda number: f"{number} {CASES[number].name}",
 )
 def test_of_a_minute_of_random_play_the_gestures_are_left_that_cause_the_failure(number, tmp_path):
@@ -85,6 +87,7 @@ def test_of_a_minute_of_random_play_the_gestures_are_left_that_cause_the_failure
         assert Shrinker(shrinker.level, smallest.without_gestures({gesture}), same).seen is None
 
 
+@pytest.mark.whole_world
 def test_any_number_of_processes_finds_the_same(tmp_path):
     case = CASES[8]
     failure = case.failure(case.record(tmp_path / "run.replay.gz"))

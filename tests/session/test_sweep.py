@@ -76,7 +76,7 @@ def test_processes_and_a_resumed_sweep_give_the_same_table(level, tmp_path, monk
     assert texts[0] == texts[1] == texts[2]
 
 
-@pytest.mark.slow
+@pytest.mark.whole_world
 def test_dask_gives_the_same_table_though_a_worker_is_killed_half_way():
     grid = SweepGrid(rope_level(), {"cs": (0.1, 0.2, 0.4), "cd": (0.0, 0.3, 0.6, 1.0)}, 12)
     alone = dict(swept(grid, [], 1))

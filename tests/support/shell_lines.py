@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from platformdirs import user_cache_path
+
 from tests.support.person import DEADLINE, VirtualScreen, Visitor, stranger_environment
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,6 +58,15 @@ def lines_of(page: Path) -> Iterator[ShellLine]:
             whole, begun = "", number
 
 
+def _environment(home: Path) -> dict[str, str]:
+    """Variables of a stranger with that home: kernels that were edited here and compiled need not be once more."""
+    environment = stranger_environment(home)
+    cache = home / ".cache" / "spring-sandbox"
+    cache.mkdir(parents=True)
+    (cache / "kernels").symlink_to(user_cache_path("spring-sandbox", appauthor=False) / "kernels")
+    return environment
+
+
 class Reader:
     """Copies lines into a shell: in a folder with the project's files, with a home where nobody has been."""
 
@@ -68,7 +79,7 @@ class Reader:
             shutil.copy(path, self.folder)
         (self.folder / ".venv").symlink_to(sys.prefix, target_is_directory=True)
         programs = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-        self.environment = {**stranger_environment(self.home), "PATH": programs}
+        self.environment = {**_environment(self.home), "PATH": programs}
 
     def fault(self, line: ShellLine) -> str | None:
         """Carry a line out; what was wrong with it."""
@@ -87,7 +98,7 @@ class Reader:
     def _visit(self, text: str) -> str | None:
         """Open a window in a home of its own, click into it, close it; what was wrong."""
         assert self._screen is not None
-        environment = {**self.environment, "HOME": tempfile.mkdtemp(dir=self.home)}
+        environment = {**self.environment, **_environment(Path(tempfile.mkdtemp(dir=self.home)))}
         visitor = Visitor(self._screen, f"exec {text}", self.folder, environment)
         try:
             visitor.wait_for(" - Spring Sandbox")
