@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from sandbox.bring.making import level_of_drawing, tidy
 from sandbox.bring.picture import read_picture
 from sandbox.bring.rube import level_of_rube
-from sandbox.bring.sketch import Kind, LeftOut, Object, Sketch, Unreadable, check_points, local_name, xml_tree
+from sandbox.bring.sketch import Kind, LeftOut, Object, Unreadable, check_points, local_name, xml_tree
 from sandbox.bring.svg import read_svg
 from sandbox.bring.tiled import map_data, read_tiled, tileset_data
 from sandbox.level.document.messages import worded
@@ -106,7 +106,14 @@ def _level(
     if name == RUBE:
         assert raw is not None
         return level_of_rube(raw, kind, width, title)
-    drawing = _drawing(name, data, raw, Path(source).parent)
+    if name == PNG:
+        drawing = read_picture(data)
+    elif name == SVG:
+        drawing = read_svg(data)
+    else:
+        found = map_data(xml_tree(data)) if name == TILED_XML else raw
+        assert found is not None
+        drawing = read_tiled(found, _Shelf(Path(source).parent).tile_set)
     check_points(drawing)
     return level_of_drawing(drawing, kind or drawing.usual, width, title), drawing.left_out
 
@@ -121,16 +128,6 @@ def _recognised(data: bytes, source: str) -> tuple[str | None, Object | None]:
     if not isinstance(raw, dict):
         return None, None
     return ("a level already" if "format" in raw else foreign_keys(raw)), raw
-
-
-def _drawing(name: str | None, data: bytes, raw: Object | None, folder: Path) -> Sketch:
-    if name == PNG:
-        return read_picture(data)
-    if name == SVG:
-        return read_svg(data)
-    found = map_data(xml_tree(data)) if name == TILED_XML else raw
-    assert found is not None
-    return read_tiled(found, _Shelf(folder).tile_set)
 
 
 class _Shelf:

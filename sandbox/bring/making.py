@@ -302,7 +302,10 @@ def jelly(shape: Region, name: str, spacing: float, making: Making) -> JellyDef 
         if rounded is None:
             continue
         outline, holes, centre = _loops(rounded)
-        if not _is_sound(outline, holes):
+        loops = [outline, *holes]
+        if any(not 3 <= len(loop) <= 1_000 or not is_simple(loop) for loop in loops):
+            continue
+        if sum(map(len, loops)) > 2_000 or loops_touch(loops):
             continue
         most = FINE * max(FEWEST_PARTICLES, rounded.area / (ROW * spacing * spacing))
         found = fitting_spacing(outline, holes, significant(spacing, DIGITS), most)
@@ -343,13 +346,6 @@ def _loops(polygon: "Polygon") -> tuple[Loop, tuple[Loop, ...], tuple[float, flo
         return tuple((round(a - x, PLACE_DIGITS), round(b - y, PLACE_DIGITS)) for a, b in list(ring.coords)[:-1])
 
     return loop(polygon.exterior), tuple(loop(ring) for ring in polygon.interiors), (x, y)
-
-
-def _is_sound(outline: Loop, holes: tuple[Loop, ...]) -> bool:
-    loops = [outline, *holes]
-    if any(len(loop) < 3 or len(loop) > 1_000 or not is_simple(loop) for loop in loops):
-        return False
-    return sum(map(len, loops)) <= 2_000 and not loops_touch(loops)
 
 
 def solid_shapes(drawing: Sketch) -> list[Region]:

@@ -50,7 +50,7 @@ from sandbox.level.format.limits import COLLISION_GROUP_LIMIT, FORMAT, GRAVITY_L
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
-from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.level.kinds.jelly import CircleShape
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME
 
 STATIC, KINEMATIC, DYNAMIC = 0, 1, 2
@@ -148,7 +148,9 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
         if kind == JELLY or (kind is None and body.kind == DYNAMIC and not is_chain):
             owners[index] = _jellies(body, name, spacing, taken, left_out)
         else:
-            terrain += _terrain(body, name, taken, left_out)
+            for piece in ground_of(_shapes(body), body.lines, name, left_out):
+                own, touch = free_name(body.name or name, name, taken), (body.friction, body.restitution)
+                terrain.append(replaced(piece, id=own, friction=touch[0], restitution=touch[1]))
     if sum(map(len, owners)) > MOVING_LIMIT:
         raise Unreadable(f"has more than {MOVING_LIMIT} bodies that move; make it smaller")
     found = JoinedBodies([body for made in owners for body in made], taken)
@@ -283,30 +285,15 @@ def _jellies(body: SceneBody, base: str, spacing: float, taken: set[str], left_o
             left_out.add("body too fine for a mesh")
             continue
         if body.circle is not None:
-            found = _disc(found, body.circle)
+            # One that rolls as a whole, as heavy as one of another mesh.
+            even = body.circle / DISC_RINGS
+            mass = min(1e9, max(1e-9, found.particle_mass * (even / found.spacing) ** 2))
+            found = replaced(
+                found, shape=CircleShape(circle=body.circle), holes=(), spacing=even, particle_mass=mass,
+                particle_radius=min(0.05, even / 8.0),
+            )  # fmt: skip
         made.append(replaced(found, velocity=body.velocity, friction=body.friction, restitution=body.restitution))
     return made
-
-
-def _disc(found: JellyDef, radius: float) -> JellyDef:
-    """A jelly that rolls as a whole, as heavy as one of another mesh."""
-    spacing = radius / DISC_RINGS
-    share = (spacing / found.spacing) ** 2
-    return replaced(
-        found, shape=CircleShape(circle=radius), holes=(), spacing=spacing,
-        particle_mass=min(1e9, max(1e-9, found.particle_mass * share)), particle_radius=min(0.05, spacing / 8.0),
-    )  # fmt: skip
-
-
-def _terrain(body: SceneBody, base: str, taken: set[str], left_out: LeftOut) -> list[TerrainDef]:
-    shapes = _shapes(body)
-    pieces = ground_of(shapes, body.lines, base, left_out)
-    return [
-        replaced(
-            piece, id=free_name(body.name or base, base, taken), friction=body.friction, restitution=body.restitution
-        )
-        for piece in pieces
-    ]
 
 
 def _shapes(body: SceneBody) -> list[Region]:

@@ -5,6 +5,7 @@ And what readers take it from: values of JSON, each of the type that is needed, 
 
 import io
 import math
+import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -134,7 +135,7 @@ def check_points(drawing: Sketch) -> None:
 def number(holder: Object, key: str, default: float = 0.0) -> float:
     """A finite number; default where there is none. Raises Unreadable."""
     value = holder.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not _is_finite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise Unreadable(f"{key}: {shown(value)} is no number")
     return float(value)
 
@@ -163,13 +164,6 @@ def objects(holder: Object, key: str) -> list[Object]:
     if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
         raise Unreadable(f"{key}: {shown(value)} is no list of objects")
     return value
-
-
-def _is_finite(value: float) -> bool:
-    try:
-        return math.isfinite(value)
-    except OverflowError:
-        return False
 
 
 def xml_tree(data: bytes) -> Element:

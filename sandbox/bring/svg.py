@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
@@ -100,7 +100,8 @@ class _Reader:
     def read(self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str) -> None:
         """Take in an element and all in it; matrix: from its parent's coordinates to those of the page."""
         own = _own_properties(element, self._sheet)
-        style = _inherited(style, own)
+        given = {key.replace("-", "_"): value for key, value in own.items() if value != "inherit"}
+        style = replace(style, **{key: value for key, value in given.items() if key in Style.__dataclass_fields__})
         if own.get("display") == "none":
             self.drawing.left_out.add("hidden element")
             return
@@ -187,9 +188,10 @@ class _Reader:
                 self.drawing.lines.append(OpenLine(points, width, tint, name))
 
     def _colour(self, paint: str, style: Style) -> str | None:
-        server = _paint_server(paint)
-        if server is None:
+        named = _PAINT_SERVER.match(paint)
+        if named is None:
             return _colour_of(paint, style)
+        server = named[1]
         found = self._by_id.get(server)
         kind = SERVERS.get(local_name(found), "paint") if found is not None else "paint that is not in the file"
         if server not in self._told_servers:
@@ -291,18 +293,6 @@ def _own_properties(element: Element, sheet: Sheet) -> dict[str, str]:
     for selector in (local_name(element), *(f".{name}" for name in classes), f"#{element.get('id', '')}"):
         found.update(sheet.get(selector, {}))
     return found | _declarations(element.get("style", ""))
-
-
-def _inherited(style: Style, own: Mapping[str, str]) -> Style:
-    """The style of an element in one of another."""
-    given = {key.replace("-", "_"): value for key, value in own.items() if value != "inherit"}
-    return replace(style, **{key: value for key, value in given.items() if key in Style.__dataclass_fields__})
-
-
-def _paint_server(paint: str) -> str | None:
-    """The id of the gradient or pattern that a paint names; None for a colour."""
-    found = _PAINT_SERVER.match(paint)
-    return found[1] if found else None
 
 
 def _colour_of(paint: str, style: Style) -> str | None:

@@ -126,7 +126,10 @@ class _Map:
             elif kind == "objectgroup":
                 is_solid = _is_marked(layer) or bool(SOLID_LAYER.search(text(layer, "name")))
                 for each in objects(layer, "objects"):
-                    if is_solid or self._may_be_solid(each):
+                    # Where nothing is said of the layer: what its own kind says is solid, or all if none says so.
+                    said = text(each, "type") or text(each, "class")
+                    is_named = bool(SOLID_LAYER.search(said)) or _is_marked(each)
+                    if is_solid or is_named or not (said or self._says_solid):
                         self._take_object(each, place)
                     else:
                         self.drawing.left_out.add("object of the game")
@@ -135,11 +138,6 @@ class _Map:
                     self._layers.append((text(layer, "name"), _is_marked(layer), cells, corner, place))
             else:
                 self.drawing.left_out.add("image layer" if kind == "imagelayer" else "layer of another kind")
-
-    def _may_be_solid(self, each: Object) -> bool:
-        """Whether an object of a layer that nothing says of is solid: where its own kind says so, or none does."""
-        kind = text(each, "type") or text(each, "class")
-        return bool(SOLID_LAYER.search(kind)) or _is_marked(each) or not (kind or self._says_solid)
 
     def _take_object(self, each: Object, offset: tuple[float, float]) -> None:
         x, y = number(each, "x") + offset[0], number(each, "y") + offset[1]

@@ -226,7 +226,9 @@ def as_in_solver(world: World, spring: int, a: float, alone: bool) -> tuple[floa
 
 def engine_numbers(body: ChosenBody) -> dict[str, EngineNumbers]:
     """The numbers of a body for every engine, by its name in `--to`."""
-    added = steps_of_added_springs(body)
+    # Springs of this k can be added one by one in steps in each of which k h^2 / m_r n_eff < 4.
+    whole = body.restoring * (body.tick / body.h) ** 2
+    added = math.floor(math.sqrt(whole * body.n_eff / BOUND)) + 1
     return {
         "box2d": _solved(body, "Box2D 3", SOFT_STEP_SUBSTEPS, 2.0, BOX2D),
         "unity": _solved(body, "Unity 2D", 1, 1.0, UNITY),
@@ -235,12 +237,6 @@ def engine_numbers(body: ChosenBody) -> dict[str, EngineNumbers]:
         "pymunk": _added(body, "pymunk 7", added, 1, PYMUNK),
         "chipmunk": _added(body, "Chipmunk 7", added, 1, CHIPMUNK),
     }
-
-
-def steps_of_added_springs(body: ChosenBody) -> int:
-    """Steps a tick with which springs of this k can be added one by one: k h^2 / m_r n_eff < 4 in each."""
-    whole = body.restoring * (body.tick / body.h) ** 2
-    return math.floor(math.sqrt(whole * body.n_eff / BOUND)) + 1
 
 
 def _solved(body: ChosenBody, engine: str, steps: int, own: float, difference: str) -> EngineNumbers:
@@ -269,15 +265,11 @@ def _engine_numbers(
     """restoring = k h^2 / m_r and damping = c h / m_r of the engine's step, in which it is damped this many times."""
     h, least = body.tick / steps, max(damping, 0.0)
     ratio = 0.5 * least / math.sqrt(restoring) if restoring > 0.0 else 0.0
+    ordered = np.sort(body.reduced)
+    apart = np.flatnonzero(np.diff(ordered) > SAME_MASS * ordered[1:]) + 1
+    alike = [(float(part[0]), len(part)) for part in np.split(ordered, apart)]
     masses = tuple(
-        MassLine(mass, count, body.restoring * mass / body.h**2, least * mass / h / times)
-        for mass, count in _mass_lines(body)
+        MassLine(mass, count, body.restoring * mass / body.h**2, least * mass / h / times) for mass, count in alike
     )
     hertz = math.sqrt(restoring) / h / (2.0 * math.pi)
     return EngineNumbers(engine, steps, h, hertz, ratio, masses, rigid, damping < 0.0, difference)
-
-
-def _mass_lines(body: ChosenBody) -> list[tuple[float, int]]:
-    ordered = np.sort(body.reduced)
-    apart = np.flatnonzero(np.diff(ordered) > SAME_MASS * ordered[1:]) + 1
-    return [(float(part[0]), len(part)) for part in np.split(ordered, apart)]

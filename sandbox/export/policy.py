@@ -15,9 +15,6 @@ def policy(*inline: str, **sources: str) -> str:
     """
     allowed = {kind: [listed] for kind, listed in sources.items()}
     for kind, content in (found for text in inline for found in _INLINE.findall(text)):
-        allowed.setdefault(kind, []).append(_hash(content))
+        digest = base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()
+        allowed.setdefault(kind, []).append(f"'sha256-{digest}'")
     return "; ".join([_NOTHING, *(f"{kind}-src {' '.join(listed)}" for kind, listed in sorted(allowed.items()))])
-
-
-def _hash(content: str) -> str:
-    return f"'sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}'"

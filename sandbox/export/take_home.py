@@ -149,7 +149,12 @@ def as_text(take: TakeHome, to: str = "all") -> str:
         else:
             for language in LISTINGS if to == "article" else [to]:
                 lines += ["", f"---- {language}", "", *listing(take.trial, language).splitlines()]
-            lines += ["", *_trial(take)]
+            lines += [
+                "", "What it prints, tick x y x y; yours should agree to nine digits.",
+                "(The sandbox gives the first tick half of gravity, so that what falls is at g t^2 / 2; this loop does "
+                "not.)",
+                *("  " + line for line in expected(take.trial)),
+            ]  # fmt: skip
     return "\n".join(lines) + "\n"
 
 
@@ -236,14 +241,6 @@ def _masses(numbers: EngineNumbers) -> list[str]:
         per = f"k = {short(first.k / first.reduced_mass)} m_r, c = {short(first.c / first.reduced_mass)} m_r"
         lines.append(f"  and {len(numbers.masses) - MOST_MASSES} heavier ones; all: {per}, m_r the reduced mass in kg")
     return lines
-
-
-def _trial(take: TakeHome) -> list[str]:
-    return [
-        "What it prints, tick x y x y; yours should agree to nine digits.",
-        "(The sandbox gives the first tick half of gravity, so that what falls is at g t^2 / 2; this loop does not.)",
-        *("  " + line for line in expected(take.trial)),
-    ]
 
 
 def pasted(take: TakeHome, to: str) -> str:

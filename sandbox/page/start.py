@@ -323,7 +323,10 @@ def growth_of() -> Growth:
     found: Growth = {}
     for family in _GROWING:
         for column in FAMILIES[family]:
-            found |= _of_column(column, family.name.lower())
+            usual = float(column.usual)
+            assert math.isfinite(usual)
+            for path in (f"state.{column.name}", *([f"good.{column.name}"] if column.guarded else [])):
+                found[path] = family.name.lower(), usual, 0
     for name in Drives._fields:
         found[f"drives.{name}"] = "hydraulic" if name in _HYDRAULIC else "muscle", 0.0, 0
     for name in DrivenWheels._fields:
@@ -336,13 +339,6 @@ def growth_of() -> Growth:
     return found | {"water.hull": ("hull", 0.0, 0), "areas": ("area", 0.0, 0)}
 
 
-def _of_column(column: Column, family: str) -> Growth:
-    usual = float(column.usual)
-    assert math.isfinite(usual)
-    paths = [f"state.{column.name}", *([f"good.{column.name}"] if column.guarded else [])]
-    return {path: (family, usual, 0) for path in paths}
-
-
 def image_of(block: tuple[Any, ...]) -> Image:
     """The image of a named tuple of contiguous arrays and of such tuples; arrays that share memory share it there."""
     arrays = dict(arrays_of(block))
@@ -351,7 +347,13 @@ def image_of(block: tuple[Any, ...]) -> Image:
         table[path] = ArrayPlace(words, array.dtype.str.lstrip("<|"), array.ndim)
         words += HEAD_WORDS + 2 * array.ndim
     where, content = _laid_out(list(arrays.values()), _aligned(WORD * words))
-    values = [value for array in arrays.values() for value in _words(array, where)]
+    values = [
+        value
+        for array in arrays.values()
+        for value in (
+            0, 0, array.size, array.itemsize, where.get(array.ctypes.data, 0), *array.shape, *array.strides,
+        )
+    ]  # fmt: skip
     content[: WORD * words] = np.array(values, "<i8").tobytes()
     copies = _leave_out_copies(list(arrays.values()), where, content)
     return Image(bytes(content), table, copies)
@@ -394,10 +396,6 @@ def _leave_out_copies(
         copies.append((place, first[held], len(held)))
         content[place : place + len(held)] = bytes(len(held))
     return copies
-
-
-def _words(array: NDArray[Any], where: dict[int, int]) -> tuple[int, ...]:
-    return 0, 0, array.size, array.itemsize, where.get(array.ctypes.data, 0), *array.shape, *array.strides
 
 
 def _aligned(size: int) -> int:

@@ -182,7 +182,7 @@ def pulls_of(world: World) -> list[Pull]:
         x, y = world.hand_force[hand].tolist()
         particle = int(world.particle_b[grips.spring[i]])
         limit = float(world.hand_strength[hand] * grips.mass[i])
-        pinned = particle in _joined_to_pins(world)
+        pinned = particle in world.derived(_joined_to_pins, of_hands=False)
         # What is clamped may be above by a rounding.
         force = min(float(np.hypot(x, y)), limit)
         pulls.append(Pull(int(grips.cursor[i]), particle, force, limit, pinned))
@@ -190,10 +190,6 @@ def pulls_of(world: World) -> list[Pull]:
 
 
 def _joined_to_pins(world: World) -> frozenset[int]:
-    return world.derived(_find_joined, of_hands=False)
-
-
-def _find_joined(world: World) -> frozenset[int]:
     """The particles of all bodies that springs join to something pinned."""
     free, label = world.inverse_mass > 0.0, block_of(world).arrays.body_label
     joins = world.spring_active & (world.material != GRAB_MATERIAL)

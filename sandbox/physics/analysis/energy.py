@@ -187,7 +187,10 @@ class Dissipation:
 
     def before(self, world: World, changed: bool = True) -> None:
         """Look at a world that is about to make a tick; changed: whether it may differ from the last look `after`."""
-        if _is_worked_on(world):
+        settings, flow = world.settings, world.water[:, FLOW_X : FLOW_Y + 1]
+        blows = settings.drag > 0.0 and any(settings.wind)
+        is_driven = bool(len(world.actuators.muscles.spring)) or bool(np.any(world.actuator_value))
+        if world.any_held() or is_driven or blows or flow.any():
             self._before = None
         else:
             self._before = total_energy(world) if changed or self._after is None else self._after
@@ -198,14 +201,6 @@ class Dissipation:
         if self._before is not None:
             self._after = total_energy(world)
             self.energy += self._before - self._after
-
-
-def _is_worked_on(world: World) -> bool:
-    settings = world.settings
-    blows = settings.drag > 0.0 and any(settings.wind)
-    flows = bool(world.water[:, FLOW_X : FLOW_Y + 1].any())
-    is_driven = bool(len(world.actuators.muscles.spring)) or bool(np.any(world.actuator_value))
-    return world.any_held() or is_driven or blows or flows
 
 
 def water_energy(world: World) -> float:

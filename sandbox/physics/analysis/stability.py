@@ -65,7 +65,12 @@ def report(world: World) -> StabilityReport:
     if not len(counts) or counts.max() == 0.0:
         return StabilityReport(solver, 0.0, 1.0, 1.0, 1.0, True, None, "no spring does anything: nothing can blow up")
     tightest = int(np.argmax(counts))
-    most = int(_degrees(world)[_particles_of(world, tightest)].max())
+    if tightest < world.spring_count:
+        ends = np.array([world.particle_a[tightest], world.particle_b[tightest]])
+    else:
+        first = world.constraint_first[tightest - world.spring_count]
+        ends = world.corner_particle[first : first + world.constraint_corners[tightest - world.spring_count]]
+    most = int(_degrees(world)[ends].max())
     load = spring_loads(world)
     worst = int(np.argmax(load))
     within: bool | None = bool(load[worst] < BOUND)
@@ -97,14 +102,6 @@ def _owner_name(world: World, slot: int) -> str:
     if slot < world.spring_count:
         return world.spring_names[slot]
     return slot_name(world, "element_kind", slot - world.spring_count)
-
-
-def _particles_of(world: World, slot: int) -> NDArray[np.int32]:
-    """Particles that a spring, or the constraint after the springs, joins."""
-    if slot < world.spring_count:
-        return np.array([world.particle_a[slot], world.particle_b[slot]])
-    first = world.constraint_first[slot - world.spring_count]
-    return world.corner_particle[first : first + world.constraint_corners[slot - world.spring_count]]
 
 
 def _energy_bound(world: World) -> str:

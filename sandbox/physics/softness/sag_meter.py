@@ -338,7 +338,11 @@ class SagMeters:
 
     def of(self, world: World, subject: MeasuredBody) -> SagMeter:
         """The meter of a body as it is held now."""
-        supported = self._supported(world, subject)
+        made_of = (id(world), world.topology_version, subject.body.shape, world.settings.gravity)
+        kept = self._kept.get(subject.name)
+        if kept is None or kept[0] != made_of:
+            kept = self._kept[subject.name] = made_of, supported_body(world, subject.body)
+        supported = kept[1]
         settings = replace(world.settings, wind=(0.0, 0.0))
         places = supported.points - supported.points.min(axis=0)
         exact = (supported.held, supported.rests, supported.gravity_scale, supported.friction, supported.pairs)
@@ -350,13 +354,6 @@ class SagMeters:
         if key not in self._meters:
             self._meters[key] = SagMeter(supported, settings, subject.lowest_mode)
         return self._meters[key]
-
-    def _supported(self, world: World, subject: MeasuredBody) -> SupportedBody:
-        made_of = (id(world), world.topology_version, subject.body.shape, world.settings.gravity)
-        kept = self._kept.get(subject.name)
-        if kept is None or kept[0] != made_of:
-            kept = self._kept[subject.name] = made_of, supported_body(world, subject.body)
-        return kept[1]
 
     @property
     def busy(self) -> list[SagMeter]:
@@ -373,35 +370,25 @@ def measured_bodies(world: World) -> dict[str, MeasuredBody]:
     """The bodies that are stiff by their form, and the ropes and nets that pins hold from end to end, by name."""
     found = {}
     for slot, body in enumerate(firm_bodies(world)):
-        mode = _mode_of(world, body)
+        is_whole = any(body is form for form in world.forms)
+        mode = float(world.lowest_mode[body.springs[0]]) if is_whole else 0.0
+        # While kernels are interpreted, finding one takes long.
+        if not mode > 0.0 and COMPILED and len(body.shape.mass) <= LARGEST_READ:
+            mode = lowest_mode_of(body.shape)
         # What is held everywhere cannot sag.
         if mode > 0.0 and not supported_body(world, body).held.all():
             found[body.name] = MeasuredBody(body.name, body, slot, mode)
-    for name, springs in _named(world).items():
+    named: dict[str, list[int]] = {}
+    for slot, name in enumerate(world.spring_names):
+        owner, colon, _ = name.rpartition(":")
+        if owner and colon and world.spring_active[slot] and world.law[slot] != LAW_HOOKE:
+            named.setdefault(owner, []).append(slot)
+    for name, springs in named.items():
         net = None if name in found else _net(world, name, springs)
         if net is not None:
             supported = supported_body(world, net)
             if supported.support is Support.SPANNED and not supported.held.all():
                 found[name] = MeasuredBody(name, net, None, 0.0)
-    return found
-
-
-def _mode_of(world: World, body: FirmBody) -> float:
-    """The lowest mode of a body; while kernels are interpreted, which takes long, only where it is known."""
-    is_whole = any(body is form for form in world.forms)
-    known = float(world.lowest_mode[body.springs[0]]) if is_whole else 0.0
-    if known > 0.0 or not COMPILED:
-        return known
-    return lowest_mode_of(body.shape) if len(body.shape.mass) <= LARGEST_READ else 0.0
-
-
-def _named(world: World) -> dict[str, list[int]]:
-    """Springs by the body that they are named after."""
-    found: dict[str, list[int]] = {}
-    for slot, name in enumerate(world.spring_names):
-        body, colon, _ = name.rpartition(":")
-        if body and colon and world.spring_active[slot] and world.law[slot] != LAW_HOOKE:
-            found.setdefault(body, []).append(slot)
     return found
 
 

@@ -17,7 +17,7 @@ from sandbox.physics.keeping.equipment import FirmBody, design_gravity
 from sandbox.physics.marks import BANK_UNOPENED, TERRAIN_GROUP
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.terrain import Chain, Terrain, make_terrain
+from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
 
 # A frame at least so many times as long as high, which nothing holds, lies on its two ends; elsewhere at its foot or at
@@ -203,8 +203,11 @@ def _may_buckle(body: SupportedBody) -> bool:
 def supported_body(world: World, body: FirmBody) -> SupportedBody:
     """A body as it is held in its world."""
     slots = slots_of(world, body)
-    turn = _upright(world.settings.gravity)
-    points, pairs = body.shape.points @ turn, body.shape.pairs
+    gravity, pairs = world.settings.gravity, body.shape.pairs
+    strength = design_gravity(*gravity)
+    x, y = (gravity[0] / strength, gravity[1] / strength) if any(gravity) else (0.0, -1.0)
+    # Turned so that gravity goes down.
+    points = body.shape.points @ np.array([[-y, -x], [x, -y]])
     rest = world.natural_length[body.springs]
     held = _is_held(world, body, slots)
     rests = np.zeros(len(points), np.bool_)
@@ -233,13 +236,6 @@ def slots_of(world: World, body: FirmBody) -> Slots:
     slots[body.shape.pairs[:, 0]] = world.particle_a[body.springs]
     slots[body.shape.pairs[:, 1]] = world.particle_b[body.springs]
     return slots
-
-
-def _upright(gravity: tuple[float, float]) -> Floats:
-    # Turns points (n, 2), from the right, so that gravity goes down.
-    strength = design_gravity(*gravity)
-    x, y = (gravity[0] / strength, gravity[1] / strength) if any(gravity) else (0.0, -1.0)
-    return np.array([[-y, -x], [x, -y]])
 
 
 def _is_held(world: World, body: FirmBody, slots: Slots) -> Flags:
@@ -328,20 +324,16 @@ def _hull(points: Floats) -> Floats:
 def _resting(world: World, slots: Slots, shortest: float, points: Floats) -> Flags:
     """Which particles (n,) of a beam lie on the level's terrain; where none do, its two ends."""
     reach = world.radius[slots] + TOUCHING * shortest
-    rests = _distance(world.terrain, world.origin[slots]) <= reach
+    places, terrain = world.origin[slots], world.terrain
+    distance = np.full(len(points), np.inf)
+    for a, b in zip(terrain.vertex[terrain.edge_a], terrain.vertex[terrain.edge_b], strict=True):
+        along = b - a
+        square = float(along @ along)
+        share = np.clip((places - a) @ along / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(places))
+        distance = np.minimum(distance, np.hypot(*(places - a - share[:, None] * along).T))
+    rests = distance <= reach
     low = points[:, 1] <= points[:, 1].min() + 1e-6 * float(np.ptp(points))
     x = points[:, 0]
     if rests.any() and np.ptp(x[rests]) >= SPAN * np.ptp(x):
         return rests
     return low & ((x <= x[low].min() + 1e-9) | (x >= x[low].max() - 1e-9))
-
-
-def _distance(terrain: Terrain, points: Floats) -> Floats:
-    """Distance [m] of points (n, 2) from the nearest line of a terrain; inf where there is none."""
-    found = np.full(len(points), np.inf)
-    for a, b in zip(terrain.vertex[terrain.edge_a], terrain.vertex[terrain.edge_b], strict=True):
-        along = b - a
-        square = float(along @ along)
-        share = np.clip((points - a) @ along / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(points))
-        found = np.minimum(found, np.hypot(*(points - a - share[:, None] * along).T))
-    return found

@@ -5,7 +5,7 @@ body, the others come after all bodies, so that a cut moves no number of what it
 area, crumbs and threads, are none.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -387,24 +387,18 @@ def firm(
     height = height_along(piece.form.points, firming.gravity_x, firming.gravity_y)
     gravity = design_gravity(firming.gravity_x, firming.gravity_y)
     code = share_out(Reach(mode, height, gravity, 1.0 / firming.tick_rate), firming.asked, found)
-    if code == FIRMED:
-        _set(state, good, piece, found[0], found[1], mode, firming.duration)
-    return code
-
-
-@inner_kernel
-def _set(
-    state: State, good: GoodValues, piece: FormPiece, stiffness: float, damping: float, mode: float, duration: int
-) -> None:
-    if stiffness == 1.0 and damping == 1.0:
+    if code != FIRMED:
+        return code
+    if found[0] == 1.0 and found[1] == 1.0:
         # All of them rigid, which they are alone as well.
-        mode = 0.0
+        stiffness, damping, mode = 1.0, 1.0, 0.0
     else:
-        stiffness, damping = of_springs(stiffness, damping, mode)
+        stiffness, damping = of_springs(found[0], found[1], mode)
     for row in range(piece.spring.shape[0]):
-        set_spring(state, good, piece.spring[row], stiffness, damping, mode, duration)
+        set_spring(state, good, piece.spring[row], stiffness, damping, mode, firming.duration)
     for row in range(piece.constraint.shape[0]):
-        set_constraint(state, good, piece.constraint[row], stiffness, damping, mode, duration)
+        set_constraint(state, good, piece.constraint[row], stiffness, damping, mode, firming.duration)
+    return FIRMED
 
 
 @inner_kernel
@@ -481,13 +475,10 @@ class FormTable:
 
     def piece(self, world: StateArrays, body: int, number: int) -> FormPiece:
         """A piece of a body that was cut."""
-        pointer = self._lend(world)
+        pointer = bundle(Firmable(state_of(world), good_of(world), self.forms, self.modes, empty(FormPiece)))
         lay_out(take_piece, pointer, np.zeros(FIRST_ARENA, np.int64), body, number)
         piece: FormPiece = items_of(pointer, ("piece",))
         return piece
-
-    def _lend(self, world: StateArrays) -> Any:
-        return bundle(Firmable(state_of(world), good_of(world), self.forms, self.modes, empty(FormPiece)))
 
 
 def forms_of(bodies: tuple[FirmBody, ...]) -> Forms:

@@ -163,19 +163,6 @@ def _add_constraint(
 
 
 @inner_kernel
-def _list_links(rows: ConstraintRows, link_a: Slots, link_b: Slots) -> int:
-    # Each pair of corners of a row that are two particles; how many there are.
-    count = 0
-    for k in range(rows.mass.shape[0]):
-        for one in range(rows.first[k], rows.first[k + 1]):
-            for other in range(rows.first[k], one):
-                if rows.node[one] != rows.node[other]:
-                    link_a[count], link_b[count] = rows.node[one], rows.node[other]
-                    count += 1
-    return count
-
-
-@inner_kernel
 def _add_block(matrix: Matrix, rows: ConstraintRows, k: int, one: int, other: int) -> None:
     # m g g^T of two corners of a row. The row of the block is the later of the two.
     a, b = rows.node[one], rows.node[other]
@@ -254,7 +241,14 @@ def lowest_mode_in(form: StiffForm, arena: Arena) -> float:
     rigid = new_float_tables(arena, WHOLE_MOTIONS, count, 2)
     if is_full(arena):
         return NO_MODE
-    links = _list_links(rows, link_a, link_b)
+    # Each pair of corners of a row that are two particles.
+    links = 0
+    for k in range(rows.mass.shape[0]):
+        for one in range(rows.first[k], rows.first[k + 1]):
+            for other in range(rows.first[k], one):
+                if rows.node[one] != rows.node[other]:
+                    link_a[links], link_b[links] = rows.node[one], rows.node[other]
+                    links += 1
     ordered = order_by_degree(count, link_a[:links], link_b[:links], arena)
     if is_full(arena):
         return NO_MODE
