@@ -1,7 +1,5 @@
 """AxleTool: a click puts an axle through what is there: two bodies turn about it, or one about a place of the world."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from sandbox.physics.analysis.query import bodies_around, particle_at, shown_particles
@@ -22,10 +20,6 @@ TOO_FEW = "This is too small for an axle. Hold it with the pin tool (P)."
 
 class AxleTool(Tool):
     """Join the two bodies under a click by a hinge there, or one body to the world. Each axle is a gesture."""
-
-    def __init__(self, new_gesture: Callable[[], int]) -> None:
-        self._new_gesture = new_gesture
-        self._refusal = ""
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Put an axle there on a press."""
@@ -60,16 +54,6 @@ class AxleTool(Tool):
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
         """A particle of what an axle would go through."""
         return particle_at(snapshot, place, within)
-
-    @property
-    def hint(self) -> str:
-        """Why there is no axle."""
-        return self._refusal
-
-    def cancel(self) -> Response:
-        """Nothing is ever under way."""
-        self._refusal = ""
-        return NOTHING
 
 
 def _spokes(snapshot: Snapshot, owner: int, event: PointerEvent) -> Slots:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import FloatRows
-from sandbox.physics.geometry.segment import signed_area, winding_number
+from sandbox.physics.geometry.segment import doubled_areas, signed_area, winding_number
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.tool import Loop
 
@@ -111,8 +111,6 @@ def _cross(a: FloatRows, b: FloatRows, c: FloatRows, d: FloatRows) -> bool:
     if not len(c):
         return False
 
-    def side(p: FloatRows, q: FloatRows, r: FloatRows) -> NDArray[np.float64]:
-        return (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
-
     a, b, c, d = a[:, None], b[:, None], c[None], d[None]
-    return bool(np.any((side(a, b, c) * side(a, b, d) < 0.0) & (side(c, d, a) * side(c, d, b) < 0.0)))
+    crosses = doubled_areas(a, b, c) * doubled_areas(a, b, d) < 0.0
+    return bool(np.any(crosses & (doubled_areas(c, d, a) * doubled_areas(c, d, b) < 0.0)))

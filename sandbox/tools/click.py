@@ -1,6 +1,5 @@
 """Tools that do something to the particle that is clicked: pin it, take it out, or freeze all of its body."""
 
-from collections.abc import Callable
 from typing import ClassVar
 
 import numpy as np
@@ -20,9 +19,6 @@ class ClickTool(Tool):
     reach: ClassVar[float] = 1.0
     is_held = False
 
-    def __init__(self, new_gesture: Callable[[], int]) -> None:
-        self._new_gesture = new_gesture
-
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
         """What a click on a particle does."""
         raise NotImplementedError
@@ -36,10 +32,6 @@ class ClickTool(Tool):
             return NOTHING
         gesture = self._new_gesture()
         return Response(tuple(Submission(command, gesture) for command in self.commands(particle, snapshot)))
-
-    def cancel(self) -> Response:
-        """Nothing is ever under way."""
-        return NOTHING
 
 
 class PinTool(ClickTool):

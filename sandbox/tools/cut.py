@@ -15,8 +15,8 @@ class CutTool(PlacedTool):
     """Cut springs; a whole stroke is one gesture."""
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
+        super().__init__(new_gesture)
         self._trail: list[Point] = []
-        self._new_gesture = new_gesture
         self._gesture: int | None = None
         self._cut: set[int] = set()
 

@@ -48,9 +48,9 @@ class DragTool(Tool):
     """
 
     def __init__(self, new_gesture: Callable[[], int], strength: str = "normal") -> None:
+        super().__init__(new_gesture)
         self.holds: dict[int, Hold] = {}
         self.strength = strength
-        self._new_gesture = new_gesture
         self._dragged: int | None = None
         self._carried: Carried | None = None
         self._pressed_at: Point = (0.0, 0.0)

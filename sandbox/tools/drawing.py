@@ -87,10 +87,10 @@ class StrokeTool(PlacedTool):
     adds = True
 
     def __init__(self, new_gesture: Callable[[], int], stuff: str) -> None:
-        self._new_gesture, self._stuff = new_gesture, STUFFS[stuff]
+        super().__init__(new_gesture)
+        self._stuff = STUFFS[stuff]
         self._stroke: Loop = []
         self._is_drawing = False
-        self._refusal = ""
         self.count = 0
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
@@ -138,15 +138,10 @@ class StrokeTool(PlacedTool):
         """Whether the last stroke became a body."""
         return not self._refusal
 
-    @property
-    def hint(self) -> str:
-        """Why it did not."""
-        return self._refusal
-
     def cancel(self) -> Response:
         """Give the stroke up."""
-        self._stroke, self._is_drawing, self._refusal, self.place = [], False, "", None
-        return NOTHING
+        self._stroke, self._is_drawing, self.place = [], False, None
+        return super().cancel()
 
 
 _LINES = {

@@ -194,7 +194,7 @@ class ThrowTool(PlacedTool):
     adds = True
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
-        self._new_gesture = new_gesture
+        super().__init__(new_gesture)
         self._snapshot: Snapshot | None = None
         self._landing: tuple[object, Point | None] = (None, None)
         self._pressed_at: Point | None = None
@@ -283,8 +283,7 @@ class DropTool(Sized, ThrowTool):
 
     def __init__(self, new_gesture: Callable[[], int], part: str) -> None:
         super().__init__(new_gesture)
-        self.part, self.size = PARTS[part], 1.0
-        self.count = 0
+        self.part, self.count = PARTS[part], 0
 
     def made(self, place: Point, velocity: Point, snapshot: Snapshot) -> tuple[Command, ...]:
         """The part in its present size."""

@@ -118,9 +118,9 @@ class PullTool(PlacedTool):
     """Pull a rope, a spring or a rod, by its name, from one end to the other. Each is a gesture."""
 
     def __init__(self, new_gesture: Callable[[], int], kind: str) -> None:
-        self._new_gesture, self._make = new_gesture, MAKERS[kind]
+        super().__init__(new_gesture)
+        self._make = MAKERS[kind]
         self._start: End | None = None
-        self._refusal = ""
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Begin at a press, and join at the release."""
@@ -158,15 +158,10 @@ class PullTool(PlacedTool):
         """The way from the start to the pointer [m]."""
         return [] if self._start is None or self.place is None else [[self._start.place, self.place]]
 
-    @property
-    def hint(self) -> str:
-        """Why nothing was joined."""
-        return self._refusal
-
     def cancel(self) -> Response:
         """Pull nothing."""
-        self._start, self._refusal, self.place = None, "", None
-        return NOTHING
+        self._start = self.place = None
+        return super().cancel()
 
 
 _LINES = {

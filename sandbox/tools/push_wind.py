@@ -47,8 +47,7 @@ class PushTool(Sized, PlacedTool):
     """
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
-        self.size = 1.0
-        self._new_gesture = new_gesture
+        super().__init__(new_gesture)
         self._pressed_at: Point | None = None
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
@@ -93,8 +92,8 @@ class WindTool(PlacedTool):
     """Let the wind blow along a drag while it is held; strength [1/s]: its speed for each metre of the drag."""
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
+        super().__init__(new_gesture)
         self.strength = 4.0
-        self._new_gesture = new_gesture
         self._gesture: int | None = None
         self._pressed_at: Point = (0.0, 0.0)
         self._place: Point = (0.0, 0.0)

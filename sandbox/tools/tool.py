@@ -74,6 +74,7 @@ class DropPicture:
 class Tool(ABC):
     """Turns pointer events over a snapshot into commands. Methods that are not abstract may stay as they are here.
 
+    new_gesture: gives the number of a new gesture.
     adds: it adds bodies to the world; touches: whether these touch other things. is_held: it goes on until it is
     released; others act at a press alone. place [m]: where the pointer is before a press; None: nowhere, or unknown.
     """
@@ -82,14 +83,19 @@ class Tool(ABC):
     is_held: ClassVar[bool] = True
     touches: bool = False
     place: Point | None = None
+    _refusal: str = ""
+
+    def __init__(self, new_gesture: Callable[[], int]) -> None:
+        self._new_gesture = new_gesture
 
     @abstractmethod
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Answer one pointer event; the snapshot is of the present tick."""
 
-    @abstractmethod
     def cancel(self) -> Response:
         """Give up what is being done, as Escape asks, and let go of everything."""
+        self._refusal = ""
+        return NOTHING
 
     def reconcile(self, snapshot: Snapshot) -> None:  # noqa: B027
         """Forget what the world no longer has; called when all commands handed out so far have been applied."""
@@ -131,8 +137,8 @@ class Tool(ABC):
 
     @property
     def hint(self) -> str:
-        """What is said beside the pointer, in a sentence; nothing as a rule."""
-        return ""
+        """What is said beside the pointer, in a sentence: why the last press did nothing."""
+        return self._refusal
 
     @property
     def preview(self) -> DropPicture | None:
@@ -156,7 +162,7 @@ class PlacedTool(Tool):
 class Sized:
     """A tool that works at a size [m], which it hands on to the next such tool."""
 
-    size: float
+    size: float = 1.0
 
     def take_up(self, size: float, height: float) -> None:
         """Begin at a size that the view has room for."""
