@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.bring.sketch import FilledShape, Ring, Sketch, Unreadable
+from sandbox.bring.sketch import FilledShape, Ring, Sketch, Unreadable, area_of
 
 PIXEL_LIMIT = 16 * 1024 * 1024
 # Outlines are looked for in a picture made smaller to this many pixels a side: finer ones no mesh would show.
@@ -27,12 +27,12 @@ def read_picture(data: bytes) -> Sketch:
     if alpha.max() < OPAQUE:
         raise Unreadable("is transparent all over; there is nothing to bring in")
     drawing = Sketch("jelly", tolerance=0.6)
-    pieces = sorted(_regions(alpha), key=lambda rings: -abs(_area(rings[0])))
-    kept = [rings for rings in pieces if abs(_area(rings[0])) >= SMALLEST][:PIECE_LIMIT]
+    pieces = sorted(_regions(alpha), key=lambda rings: -area_of(rings[0]))
+    kept = [rings for rings in pieces if area_of(rings[0]) >= SMALLEST][:PIECE_LIMIT]
     if len(kept) < len(pieces):
         drawing.left_out.add("speck", len(pieces) - len(kept))
     for outer, *holes in kept or pieces[:1]:
-        rings = [outer, *(hole for hole in holes if abs(_area(hole)) >= SMALLEST)]
+        rings = [outer, *(hole for hole in holes if area_of(hole) >= SMALLEST)]
         mean = _mean_colour(colours, alpha, rings)
         # Rows of a picture go down.
         upright = tuple(np.stack([ring[:, 0], len(alpha) - ring[:, 1]], axis=1) for ring in rings)
@@ -81,11 +81,6 @@ def _regions(alpha: NDArray[np.float64]) -> list[list[Ring]]:
         [ring[:-1] - 0.5 for ring in np.split(place, offset[1:-1])]
         for place, offset in zip(points, offsets, strict=True)
     ]
-
-
-def _area(ring: Ring) -> float:
-    x, y = ring.T
-    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2.0
 
 
 def _mean_colour(colours: NDArray[np.float64], alpha: NDArray[np.float64], rings: list[Ring]) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.format.level_error import shown
+from sandbox.physics.geometry.polygon import signed_area
 
 Object = Mapping[str, Any]
 Ring = NDArray[np.float64]
@@ -117,6 +118,11 @@ def bounds(rings: Iterable[Ring]) -> tuple[float, float, float, float] | None:
     left, bottom = lows.min(axis=0).tolist()
     right, top = highs.max(axis=0).tolist()
     return left, bottom, right, top
+
+
+def area_of(ring: Ring) -> float:
+    """The area inside a ring."""
+    return abs(signed_area(ring, np.roll(ring, -1, axis=0)))
 
 
 def check_points(drawing: Sketch) -> None:

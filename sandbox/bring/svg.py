@@ -17,6 +17,7 @@ from sandbox.bring.sketch import (
     Rule,
     Sketch,
     Unreadable,
+    area_of,
     bounds,
     local_name,
     xml_tree,
@@ -222,10 +223,8 @@ class _Reader:
             return
         across = min(right, x + width) - max(left, x)
         up = min(top, -y) - max(bottom, -y - height)
-        ring = outlines[0].rings[0]
-        area = abs(float(np.sum(ring[:, 0] * np.roll(ring[:, 1], -1) - np.roll(ring[:, 0], -1) * ring[:, 1]))) / 2.0
         box = (right - left) * (top - bottom)
-        if min(across / width, up / height) >= BACKGROUND and area >= BACKGROUND * box:
+        if min(across / width, up / height) >= BACKGROUND and area_of(outlines[0].rings[0]) >= BACKGROUND * box:
             del outlines[0]
             self.drawing.left_out.add("background")
 

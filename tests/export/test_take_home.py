@@ -1,18 +1,22 @@
 """What is taken home: limits that are proven, numbers that a run shows, programs that print what they say."""
 
+import json
 import re
 import runpy
 import shutil
 import subprocess
+import xml.etree.ElementTree as ElementTree
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sandbox.cli import main
 from sandbox.export.engines import LOOSE, NoSuchBody, body_names, choose_body
 from sandbox.export.loops import LISTINGS, TICKS, expected, largest_pair, listing
 from sandbox.export.numbers import floored, short
-from sandbox.export.take_home import ENGINES, TARGETS, as_text, take_home, take_home_text
+from sandbox.export.take_home import ENGINES, PASTED_MASSES, TARGETS, as_text, pasted, take_home, take_home_text
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.level.reading.parse import parse_level
@@ -246,3 +250,111 @@ def test_a_world_in_a_run_takes_home_what_it_has_now():
         session.advance()
     assert "Here: Cs 0.05, Cd 0.1 in a tick of 1/60 s, direct solver." in take_home_text(session.world, "cube 1")
     assert "Here: Cs 0.9, Cd 0.95 in a tick" in take_home_text(session.world, "plank 7")
+
+
+@pytest.fixture(scope="module")
+def cube():
+    return take_home(load_level("jelly_pile"), "cube 1")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_lines_hold_the_numbers_that_the_text_says(cube, engine):
+    numbers = cube.engines[engine]
+    found = [float(each) for each in re.findall(r"(?<![\w.])\d+\.\d+", pasted(cube, engine))]
+    by_frequency = engine in ("box2d", "unity")
+    mass = numbers.masses[0]
+    wanted = [numbers.frequency, numbers.damping_ratio] if by_frequency else [mass.k, mass.c]
+    assert found == pytest.approx(wanted, rel=5e-3)
+
+
+def test_springs_between_different_masses_have_a_line_each_with_a_remark():
+    level = load_level("truck_bridge")
+    takes = [take_home(level, name) for name in body_names(build_world(level))]
+    several = next(
+        take for take in takes if len(take.engines["pymunk"].masses) > 1 and not take.engines["pymunk"].rigid
+    )
+    lines = pasted(several, "pymunk").splitlines()
+    count = min(len(several.engines["pymunk"].masses), PASTED_MASSES)
+    assert len(lines) == 2 * count and all(line.startswith("# the ") for line in lines[::2])
+
+
+def test_what_is_too_stiff_for_the_springs_of_an_engine_has_nothing_to_be_pasted(cube):
+    stiff = take_home(load_level("truss_bridge"))
+    rigid = [engine for engine in ENGINES if stiff.engines[engine].rigid]
+    assert rigid and not any(pasted(stiff, engine) for engine in rigid)
+
+
+@needs("pymunk", find_spec("pymunk"))
+def test_pymunk_takes_its_line(cube):
+    import pymunk
+
+    a, b, rest_length = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0), 0.4
+    spring = eval(pasted(cube, "pymunk"), {"pymunk": pymunk, "a": a, "b": b, "rest_length": rest_length})
+    mass = cube.engines["pymunk"].masses[0]
+    assert (spring.stiffness, spring.damping) == pytest.approx((mass.k, mass.c), rel=5e-3)
+
+
+def test_take_home_prints_every_number_of_the_first_body_and_how_to_have_the_programs(capsys):
+    assert main(["take-home", "jelly_pile"]) == 0
+    said = capsys.readouterr().out
+    assert said == as_text(take_home(load_level("jelly_pile")))
+    assert said.startswith('"cube 1" of "Jelly pile": ')
+    for word in ("8 substeps", "Box2D 3", "Unity 2D", "Godot 4", "Rapier 2D", "pymunk 7", "Chipmunk 7", "--to csharp"):
+        assert word in said
+
+
+@pytest.mark.parametrize("to", TARGETS)
+def test_take_home_prints_one_thing_where_it_is_asked_for_one(to, capsys):
+    assert main(["take-home", "jelly_pile", "--body", "plank 7", "--to", to]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith('"plank 7" of "Jelly pile": ')
+    languages = [line for line in said.splitlines() if line.startswith("---- ")]
+    wanted = {"article": 5, "csharp": 1, "gdscript": 1, "cpp": 1, "javascript": 1, "python": 1}
+    assert len(languages) == wanted.get(to, 0)
+    assert ("What it prints" in said) == (to in wanted)
+
+
+@pytest.mark.parametrize(("arguments", "fault"), [
+    (["jelly_pile", "--body", "plnk 7"], 'jelly_pile: there is no body with springs called "plnk 7"; did you mean'),
+    (["jelly_pile", "--to", "rapir"], '--to rapir: there is nothing called "rapir"; did you mean "rapier"?'),
+    (["jelly_pile", "--to", "zzz"], '--to zzz: there is nothing called "zzz"; there are all, article'),
+    (["hourglass", "--body", "x"], "hourglass: no spring does anything here"),
+])  # fmt: skip
+def test_take_home_says_in_one_line_what_is_not_there(arguments, fault, capsys):
+    assert main(["take-home", *arguments]) == 2
+    said = capsys.readouterr()
+    (line,) = said.err.splitlines()
+    assert fault in line and said.out == ""
+
+
+def test_export_prints_flat_data_or_writes_it_with_its_size(tmp_path, capsys):
+    assert main(["export", "walker"]) == 0
+    printed = capsys.readouterr().out
+    assert json.loads(printed)["format"] == "spring-sandbox/flat"
+    target = tmp_path / "walker.json"
+    assert main(["export", "walker", "--to", "flat", "-o", str(target)]) == 0
+    assert target.read_text(encoding="utf-8") == printed
+    assert capsys.readouterr().out == f"{target}: {len(printed.encode()) / 1000:.1f} kB\n"
+
+
+def test_export_writes_a_picture_a_program_and_the_schema(capsys):
+    assert main(["export", "walker", "--to", "svg"]) == 0
+    assert ElementTree.fromstring(capsys.readouterr().out).tag.endswith("svg")
+    assert main(["export", "walker", "--to", "pymunk"]) == 0
+    compile(capsys.readouterr().out, "walker.py", "exec")
+    assert main(["export", "--schema"]) == 0
+    assert json.loads(capsys.readouterr().out)["title"] == "Spring Sandbox flat level"
+
+
+@pytest.mark.parametrize(("arguments", "fault"), [
+    ([], "name a level, or say --schema: one of the two"),
+    (["walker", "--schema"], "name a level, or say --schema: one of the two"),
+    (["walkr"], "walkr"),
+    (["walker", "-o", "no/such/folder/x.json"], "no/such/folder"),
+])  # fmt: skip
+def test_export_says_in_one_line_what_cannot_be_done(arguments, fault, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", *arguments]) == 2
+    said = capsys.readouterr()
+    (line,) = said.err.splitlines()
+    assert fault in line and said.out == ""

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
+from sandbox.editor.document import new_level
 from sandbox.level.format.quantities import replaced
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.commands import AddBody, AddParticle, Pin, Push, Remove, SetAir, Unpin
 from sandbox.session.session import Session
+from sandbox.tools.clearance import lift
 from sandbox.tools.click import DeleteTool, FreezeTool
-from sandbox.tools.dropping import FASTEST_THROW, PARTS, DropTool
+from sandbox.tools.dropping import FASTEST_THROW, NO_ROOM, PARTS, DropTool
 from sandbox.tools.push_wind import PushTool, WindTool
 from sandbox.tools.tool import PointerEvent
 from tests.support.parts import furnished, room
@@ -29,13 +31,13 @@ def gesture(tool, session, *points, seconds=0.02):
 
 
 @pytest.fixture(params=PARTS)
-def tool(request):
+def part(request):
     return request.param
 
 
-def test_every_part_drops_where_it_is_clicked_settles_and_flies_where_it_is_thrown(tool):
+def test_every_part_drops_where_it_is_clicked_settles_and_flies_where_it_is_thrown(part):
     session = Session(room())
-    drop = DropTool(session.new_gesture, tool)
+    drop = DropTool(session.new_gesture, part)
     gesture(drop, session, (0.0, 2.0), (0.0, 2.0))
     world = session.world
     new = world.particle_active.copy()
@@ -113,3 +115,80 @@ def test_a_click_takes_out_or_freezes_what_is_under_it_and_thaws_it_again():
     (removed,) = gesture(delete, session, (-2.0, 0.5), (-2.0, 0.5))
     assert isinstance(removed, Remove) and not world.particle_active[cube].any()
     assert gesture(delete, session, (0.0, 2.0), (0.0, 2.0)) == []
+
+
+SOLID = [name for name, part in PARTS.items() if part.solid]
+
+
+def square(x, y, size=1.0):
+    half = size / 2
+    corners = [(x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half)]
+    return [[*corners, corners[0]]]
+
+
+def click(box, session, place):
+    snapshot = session.snapshot()
+    for kind in ("down", "up"):
+        answer = box.handle(PointerEvent(kind, place, 0.1, 1, False, False, 0.0, True), snapshot)
+    for command, gesture in answer.submissions:
+        session.submit(command, gesture)
+    session.apply_pending()
+    return answer.message
+
+
+@pytest.fixture
+def session():
+    return Session(new_level())
+
+
+@pytest.fixture
+def box(session):
+    made = DropTool(session.new_gesture, "box")
+    made.touches = True
+    return made
+
+
+@pytest.mark.parametrize("x", [-3.0, 0.0, 2.5])
+def test_what_is_clear_is_not_lifted_and_what_is_in_the_ground_stands_on_it(session, x):
+    assert lift(square(x, 2.0), session.snapshot()) == 0.0
+    assert lift(square(x, 0.2), session.snapshot()) == pytest.approx(0.3, abs=0.03)
+
+
+@pytest.mark.parametrize("place", [(0.0, -2.5), (30.0, 5.0), (8.0, 3.0), (0.0, 11.0)])
+def test_deep_in_the_ground_in_a_wall_and_outside_of_the_walls_there_is_no_room(session, place):
+    assert lift(square(*place), session.snapshot()) is None
+
+
+@pytest.mark.parametrize("name", SOLID)
+def test_every_part_that_is_dropped_into_the_ground_is_above_it_and_in_no_other(session, name):
+    box = DropTool(session.new_gesture, name)
+    box.touches = True
+    for _ in range(2):
+        assert not click(box, session, (0.0, 0.0))
+    world = session.world
+    half = world.particle_count // 2
+    assert world.position[:, 1].min() > -0.05
+    assert world.position[half:, 1].min() >= world.position[:half, 1].mean()
+
+
+def test_a_part_stands_on_a_part_that_was_dropped_before(session, box):
+    click(box, session, (0.0, 0.5))
+    lower = session.world.position[:, 1].max()
+    click(box, session, (0.0, 0.9))
+    upper = session.world.position[session.world.particle_count // 2 :, 1].min()
+    assert upper == pytest.approx(lower, abs=0.15)
+
+
+def test_where_there_is_no_room_a_click_says_so_adds_nothing_and_the_ghost_is_told_apart(session, box):
+    box.reconcile(session.snapshot())
+    box.hover((0.0, -2.5))
+    assert not box.fits and box.ghost
+    assert click(box, session, (0.0, -2.5)) == NO_ROOM
+    assert session.world.particle_count == 0
+    box.hover((0.0, 3.0))
+    assert box.fits
+
+
+def test_where_things_pass_through_each_other_every_place_has_room(session, box):
+    box.touches = False
+    assert not click(box, session, (0.0, -2.5)) and session.world.particle_count > 0

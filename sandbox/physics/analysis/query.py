@@ -49,29 +49,24 @@ def nearest_particle(state: World | Snapshot, point: Point, within: float) -> in
     return _nearest(distance, shown_particles(state), within)
 
 
-@_far_away
 def free_particle_at(state: World | Snapshot, point: Point, within: float) -> int | None:
     """Slot of the free particle that a press at point [m] takes: one at most `within` [m] away, else the nearest one of
     the body whose springs are around the point.
     """
-    pressed = nearest_particle(state, point, within)
-    if pressed is not None and state.inverse_mass[pressed] > 0.0:
-        return pressed
-    around = np.isin(state.owner, bodies_around(state, point))
-    taken = shown_particles(state) & (state.inverse_mass > 0.0) & around
-    distance = lengths(state.position - np.asarray(point))
-    return _nearest(distance, taken, np.inf) if taken.any() else None
+    return _pressed(state, point, within, state.inverse_mass > 0.0)
+
+
+def particle_at(state: World | Snapshot, point: Point, within: float) -> int | None:
+    """Slot of the particle at point [m], pinned or free; else as `free_particle_at`."""
+    return _pressed(state, point, within, np.ones(len(state.mass), np.bool_))
 
 
 @_far_away
-def particle_at(state: World | Snapshot, point: Point, within: float) -> int | None:
-    """Slot of the particle at point [m], pinned or free: one at most `within` [m] away, else as `free_particle_at`, of
-    the body whose springs are around the point.
-    """
+def _pressed(state: World | Snapshot, point: Point, within: float, may_be: NDArray[np.bool_]) -> int | None:
     pressed = nearest_particle(state, point, within)
-    if pressed is not None:
+    if pressed is not None and may_be[pressed]:
         return pressed
-    taken = shown_particles(state) & np.isin(state.owner, bodies_around(state, point))
+    taken = shown_particles(state) & may_be & np.isin(state.owner, bodies_around(state, point))
     return _nearest(lengths(state.position - np.asarray(point)), taken, np.inf) if taken.any() else None
 
 

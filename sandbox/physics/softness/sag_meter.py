@@ -113,7 +113,7 @@ class SagMeter:
 
     def first_answer(self, sag: float) -> Firmness | None:
         """About what makes the body sag so far, of a search that takes longer; None: it is too early, or not known."""
-        is_due = self._work.get(sag, 0.0) >= FIRST_ANSWER and self._is_told
+        is_due = self._work.get(sag, 0.0) >= FIRST_ANSWER and self._has_reference
         return self._as_soft_as(self._guess(sag))[0] if is_due else None
 
     def trace(self) -> None:
@@ -153,7 +153,7 @@ class SagMeter:
             self._given_up[question] = math.nan if found is None else found
         elif isinstance(question, float) and question not in self._found:
             # Not measured itself, but near to what was.
-            self._found[question] = self._as_soft_as(self._guess(question))[0] if self._is_told else None
+            self._found[question] = self._as_soft_as(self._guess(question))[0] if self._has_reference else None
         return True
 
     def _most_for(self, question: object) -> float:
@@ -161,10 +161,10 @@ class SagMeter:
             return MOST_OF_CURVE
         if isinstance(question, float):
             return MOST_OF_SEARCH
-        return MOST_OF_SAG if self._is_told else PATIENCE
+        return MOST_OF_SAG if self._has_reference else PATIENCE
 
     @property
-    def _is_told(self) -> bool:
+    def _has_reference(self) -> bool:
         """Whether a sag is known from which others can be told."""
         return any(SMALL < sag < LARGE for sag in self._sags.values())
 
@@ -173,7 +173,7 @@ class SagMeter:
         if self.curve is not None:
             stiffness, damping = (np.array([each]) for each in self._in_substep(pair))
             return float(self.curve.of(stiffness, damping)[0])
-        if not self._is_told:
+        if not self._has_reference:
             return None
         known = [(self._softness(each), sag) for each, sag in self._sags.items() if SMALL < sag < LARGE]
         soft = self._softness(pair)
@@ -306,7 +306,7 @@ class SagMeter:
     def _find_foothold(self) -> Work:
         """Measure a sag from which others can be guessed, the stiffer the later."""
         for share in FOOTHOLDS:
-            if self._is_told:
+            if self._has_reference:
                 break
             _, pair = self._as_soft_as(self._guess(CURVE[0]) * share)
             yield from self._sag_of(pair)
