@@ -97,14 +97,6 @@ class Region:
     name: str
 
 
-@dataclass(frozen=True)
-class Making:
-    """How jellies are made: how firm, and what a square metre of them weighs [kg]."""
-
-    firmness: FirmnessDef = SOFT
-    density: float = DENSITY
-
-
 def level_of_drawing(drawing: Sketch, kind: Kind, width: float | None, name: str) -> Level:
     """A level of what a drawing holds. Raises Unreadable where that is nothing, or too much."""
     placed = _in_metres(drawing, width)
@@ -115,7 +107,7 @@ def level_of_drawing(drawing: Sketch, kind: Kind, width: float | None, name: str
     if kind == "jelly":
         taken: set[str] = set()
         names = [free_name(shape.name or name, name, taken) for shape in shapes]
-        made = replaced(made, bodies=tuple(_jellies(shapes, names, placed.left_out, Making())))
+        made = replaced(made, bodies=tuple(_jellies(shapes, names, placed.left_out)))
     else:
         made = replaced(made, terrain=tuple(ground_of(shapes, placed.lines, name, placed.left_out)))
     check_found(made.bodies or made.terrain, placed.left_out)
@@ -264,7 +256,7 @@ def _rounded(corners: Sequence[tuple[float, float]]) -> list[tuple[float, float]
     return [place for k, place in enumerate(places) if k == 0 or place != places[k - 1]]
 
 
-def _jellies(shapes: Sequence[Region], names: Sequence[str], left_out: LeftOut, making: Making) -> list[JellyDef]:
+def _jellies(shapes: Sequence[Region], names: Sequence[str], left_out: LeftOut) -> list[JellyDef]:
     """A jelly of each shape [m], the largest first; what no mesh fits is counted."""
     kept = shapes[:BODY_LIMIT]
     if len(kept) < len(shapes):
@@ -273,7 +265,7 @@ def _jellies(shapes: Sequence[Region], names: Sequence[str], left_out: LeftOut, 
     made: list[JellyDef] = []
     corners = work = 0
     for shape, name in zip(kept, names, strict=False):
-        body = jelly(shape, name, spacing, making)
+        body = jelly(shape, name, spacing)
         if body is None:
             left_out.add("outline too fine for a mesh")
             continue
@@ -293,8 +285,13 @@ def common_spacing(areas: Sequence[float], particles: int = ALL_PARTICLES) -> fl
     return math.sqrt(max(sum(areas) / particles, max(areas) / MOST_PARTICLES) / ROW)
 
 
-def jelly(shape: Region, name: str, spacing: float, making: Making) -> JellyDef | None:
-    """A jelly of one shape [m], with a finer mesh and fewer details than drawn where that is needed, or None."""
+def jelly(
+    shape: Region, name: str, spacing: float, firmness: FirmnessDef = SOFT, density: float = DENSITY
+) -> JellyDef | None:
+    """A jelly of one shape [m], with a finer mesh and fewer details than drawn where that is needed, or None.
+
+    density: mass of a square metre [kg].
+    """
     polygon = shape.polygon
     spacing = min(spacing, math.sqrt(polygon.area / (ROW * FEWEST_PARTICLES)))
     for worn in WORN:
@@ -310,14 +307,14 @@ def jelly(shape: Region, name: str, spacing: float, making: Making) -> JellyDef 
         most = FINE * max(FEWEST_PARTICLES, rounded.area / (ROW * spacing * spacing))
         found = fitting_spacing(outline, holes, significant(spacing, DIGITS), most)
         if found is not None:
-            mass = making.density * ROW * found * found
+            mass = density * ROW * found * found
             look = BodyLook(colour=shape.colour) if shape.colour else None
             # The usual radius of particles is large beside a fine mesh.
             radius = significant(found / 8.0, DIGITS)
             return JellyDef(
                 type="jelly", id=name, shape=PolygonShape(polygon=outline), holes=holes, position=centre,
                 mesh="fitted", spacing=found, particle_mass=max(1e-6, significant(mass, DIGITS)),
-                firmness=making.firmness, particle_radius=radius if radius < 0.05 else None, look=look,
+                firmness=firmness, particle_radius=radius if radius < 0.05 else None, look=look,
             )  # fmt: skip
     return None
 

@@ -12,7 +12,6 @@ from sandbox.bring.making import (
     BODY_LIMIT,
     DENSITY,
     LARGEST,
-    Making,
     Region,
     check_found,
     common_spacing,
@@ -273,14 +272,14 @@ def _jellies(body: SceneBody, base: str, spacing: float, taken: set[str], left_o
     """The jellies of a body: one for each part of it that is apart from the others, the largest first."""
     if body.lines:
         left_out.add("chain of a body that moves", len(body.lines))
-    making = Making(RIGID, body.density if body.density > 0.0 else DENSITY)
+    density = body.density if body.density > 0.0 else DENSITY
     shapes = _shapes(body)
     if len(shapes) > 1:
         left_out.add("part of a body that is apart from the rest (it came in as one of its own)", len(shapes) - 1)
     made: list[BodyDef] = []
     for shape in shapes[:BODY_LIMIT]:
         name = free_name(body.name or base, base, taken)
-        found = jelly(shape, name, spacing, making)
+        found = jelly(shape, name, spacing, RIGID, density)
         if found is None:
             left_out.add("body too fine for a mesh")
             continue

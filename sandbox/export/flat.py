@@ -237,20 +237,10 @@ def flat(level: Level) -> FlatLevel:
     surfaces, surface_of = _surfaces(world, count)
     materials = {DEFAULT_MATERIAL: NissenMaterial(), **level.materials}
     return FlatLevel(
-        format="spring-sandbox/flat",
-        version=1,
-        name=level.name,
-        rate=settings.tick_rate,
-        steps=steps,
-        solver=settings.solver,
-        substeps=settings.substeps,
-        gravity=_pair(settings.gravity),
-        wind=_pair(settings.wind),
-        drag=settings.drag + 0.0,
-        contacts=level.has_contacts,
-        view=level.view,
-        look=level.look,
-        extras=level.extras,
+        format="spring-sandbox/flat", version=1, name=level.name, rate=settings.tick_rate, steps=steps,
+        solver=settings.solver, substeps=settings.substeps, gravity=_pair(settings.gravity),
+        wind=_pair(settings.wind), drag=settings.drag + 0.0, contacts=level.has_contacts, view=level.view,
+        look=level.look, extras=level.extras,
         materials={
             name: FlatMaterial(**{field: getattr(each, field) for field in FlatMaterial.model_fields})
             for name, each in materials.items()
@@ -264,10 +254,7 @@ def flat(level: Level) -> FlatLevel:
             for body in level.bodies
         ),
         particles=tuple(_particle(world, level, slot, surface_of[slot]) for slot in range(count)),
-        springs=springs,
-        areas=tuple(_areas(world)),
-        bends=tuple(_bends(world)),
-        terrain=tuple(_terrain(level)),
+        springs=springs, areas=tuple(_areas(world)), bends=tuple(_bends(world)), terrain=tuple(_terrain(level)),
         **_drives(world),
     )  # fmt: skip
 
@@ -292,19 +279,12 @@ def _particle(world: World, level: Level, slot: int, surface: int) -> FlatPartic
     owner = int(world.owner[slot])
     loose: ParticleDef | None = level.particles[owner - len(level.bodies)] if owner >= len(level.bodies) else None
     return FlatParticle(
-        name=world.particle_names[slot],
-        position=_pair(world.position[slot]),
-        velocity=_pair(world.velocity[slot]),
-        mass=float(world.mass[slot]),
-        radius=float(world.radius[slot]),
-        pinned=bool(world.inverse_mass[slot] == 0.0),
-        body=None if loose is not None else owner,
-        surface=surface,
-        gravity_scale=float(world.gravity_scale[slot]),
-        spin=float(world.spin[slot]),
-        look=None if loose is None else loose.look,
+        name=world.particle_names[slot], position=_pair(world.position[slot]), velocity=_pair(world.velocity[slot]),
+        mass=float(world.mass[slot]), radius=float(world.radius[slot]), pinned=bool(world.inverse_mass[slot] == 0.0),
+        body=None if loose is not None else owner, surface=surface, gravity_scale=float(world.gravity_scale[slot]),
+        spin=float(world.spin[slot]), look=None if loose is None else loose.look,
         extras={} if loose is None else loose.extras,
-    )
+    )  # fmt: skip
 
 
 def _flat_springs(world: World, level: Level) -> tuple[int, tuple[FlatSpring, ...]]:
@@ -324,23 +304,16 @@ def _flat_springs(world: World, level: Level) -> tuple[int, tuple[FlatSpring, ..
     lengths[muscles] = world.natural_length[muscles]
     springs = tuple(
         FlatSpring(
-            name=name,
-            a=int(world.particle_a[slot]),
-            b=int(world.particle_b[slot]),
-            rest_length=float(lengths[slot]),
+            name=name, a=int(world.particle_a[slot]), b=int(world.particle_b[slot]), rest_length=float(lengths[slot]),
             Cs=float(world.stiffness[slot]) if nissen[slot] else None,
             Cd=float(world.damping[slot]) if nissen[slot] else None,
             # Logarithms differ in their last digits between machines; files do not.
-            k=float(f"{k[slot]:.12g}"),
-            c=float(f"{c[slot]:.12g}"),
-            rod=bool(rods[slot]),
-            edge=bool(edges[slot]),
-            belt=float(world.belt[slot]),
-            material=world.material_names[world.material[slot]],
+            k=float(f"{k[slot]:.12g}"), c=float(f"{c[slot]:.12g}"), rod=bool(rods[slot]), edge=bool(edges[slot]),
+            belt=float(world.belt[slot]), material=world.material_names[world.material[slot]],
             extras=loose.get(name, {}),
         )
         for slot, name in enumerate(world.spring_names[:count])
-    )
+    )  # fmt: skip
     return int(steps[~rods].max(initial=1)), springs
 
 
@@ -385,11 +358,9 @@ def _outlines_of(world: World, body: BodyDef) -> tuple[FlatOutline, ...]:
 def _areas(world: World) -> Iterable[FlatArea]:
     for number in np.flatnonzero(world.constraint_active & (world.constraint_kind == AREA)).tolist():
         yield FlatArea(
-            particles=tuple(_corners(world, number)),
-            area=float(world.constraint_rest[number, 0]),
-            Cs=float(world.constraint_stiffness[number]),
-            Cd=float(world.constraint_damping[number]),
-        )
+            particles=tuple(_corners(world, number)), area=float(world.constraint_rest[number, 0]),
+            Cs=float(world.constraint_stiffness[number]), Cd=float(world.constraint_damping[number]),
+        )  # fmt: skip
 
 
 def _bends(world: World) -> Iterable[FlatBend]:
@@ -397,12 +368,9 @@ def _bends(world: World) -> Iterable[FlatBend]:
         a, middle, b = _corners(world, number)
         cosine, sine = _pair(world.constraint_rest[number])
         yield FlatBend(
-            particles=(a, middle, b),
-            cosine=cosine,
-            sine=sine,
-            Cs=float(world.constraint_stiffness[number]),
+            particles=(a, middle, b), cosine=cosine, sine=sine, Cs=float(world.constraint_stiffness[number]),
             Cd=float(world.constraint_damping[number]),
-        )
+        )  # fmt: skip
 
 
 def _corners(world: World, constraint: int) -> list[int]:
@@ -476,12 +444,10 @@ def _pair(values: Any) -> tuple[float, float]:
 def flat_text(level: FlatLevel) -> str:
     """A flat level as the text of its file: defaults left out, an item a line, numbers with all their digits."""
     data = level.model_dump(mode="json", exclude_defaults=True)
-    lines = []
-    for key, value in data.items():
-        if key in LISTED and value:
-            lines.append(f"  {json.dumps(key)}: {_listed(value)}")
-        else:
-            lines.append(f"  {json.dumps(key)}: {_line(value)}")
+    lines = [
+        f"  {json.dumps(key)}: {_listed(value) if key in LISTED and value else _line(value)}"
+        for key, value in data.items()
+    ]
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 

@@ -52,28 +52,17 @@ _BY_MASS = {
 class TakeHome:
     """All that is taken home of one body.
 
-    level: its title. material: its name. springs: how many are of it. others: how many of the body's are not, as they
-    have other numbers. stiffness, damping: Cs and Cd of a tick of h [s] under `solver`. hooke: whether k and c were
-    given instead. n_eff: see stability.py; the loop is proven below demand = 4 / n_eff of Cs + 2 Cd, and holds says
-    whether the level's own are. Other bodies that are joined to it must be within limits of their own. has_constraints:
-    whether areas or bends hold it too. rows: of 1, 2, 4 and 8 substeps. trial: two particles and ten ticks. engines:
-    by their names. firmness: one sentence.
+    level: its title. chosen: the body, with Cs and Cd of a tick under `solver`. The loop is proven below demand = 4 /
+    n_eff of Cs + 2 Cd, and holds says whether the level's own are. Other bodies that are joined to it must be within
+    limits of their own. rows: of 1, 2, 4 and 8 substeps. trial: two particles and ten ticks. engines: by their names.
+    firmness: one sentence.
     """
 
     level: str
-    body: str
-    material: str
-    springs: int
-    others: int
     solver: str
-    h: float
-    stiffness: float
-    damping: float
-    hooke: bool
-    n_eff: float
+    chosen: ChosenBody
     demand: float
     holds: bool
-    has_constraints: bool
     rows: tuple[LoopRow, ...]
     trial: LoopTrial
     engines: dict[str, EngineNumbers]
@@ -91,19 +80,10 @@ def take_home(source: Level | LevelWorld, body: str | None = None) -> TakeHome:
     rows = loop_rows(chosen)
     return TakeHome(
         level=world.level.name,
-        body=chosen.name,
-        material=chosen.material,
-        springs=len(chosen.springs),
-        others=chosen.others,
         solver=world.settings.solver,
-        h=chosen.tick,
-        stiffness=chosen.stiffness,
-        damping=chosen.damping,
-        hooke=chosen.hooke,
-        n_eff=chosen.n_eff,
+        chosen=chosen,
         demand=demand,
         holds=chosen.stiffness + 2.0 * chosen.damping < demand,
-        has_constraints=chosen.has_constraints,
         rows=rows,
         trial=loop_trial(chosen, rows[0].equal.stiffness, rows[0].equal.damping),
         engines=engine_numbers(chosen),
@@ -160,20 +140,21 @@ def as_text(take: TakeHome, to: str = "all") -> str:
 
 def _head(take: TakeHome) -> list[str]:
     title = f' of "{take.level}"' if take.level else ""
-    count = f"{take.springs} spring" + "s" * (take.springs != 1)
-    more = f"; {take.others} more have other numbers" if take.others else ""
-    rate = f"a tick of 1/{_rate(take.h)} s"
-    law = " (Hooke's springs, as they amount to for the lightest ends)" if take.hooke else ""
+    chosen = take.chosen
+    count = f"{len(chosen.springs)} spring" + "s" * (len(chosen.springs) != 1)
+    more = f"; {chosen.others} more have other numbers" if chosen.others else ""
+    rate = f"a tick of 1/{_rate(chosen.tick)} s"
+    law = " (Hooke's springs, as they amount to for the lightest ends)" if chosen.hooke else ""
     solver = take.solver.replace("_", " ")
     return [
-        f'"{take.body}"{title}: {count} of {take.material}{more}.',
-        f"Here: Cs {short(take.stiffness)}, Cd {short(take.damping)} in {rate}, {solver} solver{law}.",
+        f'"{chosen.name}"{title}: {count} of {chosen.material}{more}.',
+        f"Here: Cs {short(chosen.stiffness)}, Cd {short(chosen.damping)} in {rate}, {solver} solver{law}.",
         take.firmness,
     ]
 
 
 def _loop(take: TakeHome) -> list[str]:
-    demand = f"Cs + 2 Cd below {short(take.demand)} in each step (4 / n_eff, n_eff {short(take.n_eff)})"
+    demand = f"Cs + 2 Cd below {short(take.demand)} in each step (4 / n_eff, n_eff {short(take.chosen.n_eff)})"
     if take.holds:
         verdict = "the level's own numbers are inside."
     elif take.solver == "direct":
@@ -184,7 +165,7 @@ def _loop(take: TakeHome) -> list[str]:
     return [
         "The article's loop, all springs in a single pass:",
         f"Proven: {demand}; {verdict}",
-        *([areas] if take.has_constraints else []),
+        *([areas] if take.chosen.has_constraints else []),
         *(_row(row) for row in take.rows),
     ]
 
@@ -212,7 +193,7 @@ def _rate(h: float) -> str:
 
 def _engine(take: TakeHome, name: str) -> list[str]:
     numbers = take.engines[name]
-    softer = ". It has no areas and no bends, so this body is softer there" if take.has_constraints else ""
+    softer = ". It has no areas and no bends, so this body is softer there" if take.chosen.has_constraints else ""
     differs = f"  Differs: {numbers.difference}{softer}."
     if numbers.rigid:
         return [f"{numbers.engine}: too stiff for its springs; use rigid joints, or a softer material.", differs]

@@ -68,15 +68,15 @@ class _TakeHomePage:
         self._dialog = dialog = Dialog(ui, title, WIDTH, min(high, HEIGHT), self._reopen, is_page=True)
         self._width, self._height, self._box = dialog.width, dialog.height, dialog.box
         menu = ui.rect(self._width - MARGIN - MENU_WIDTH, 18, MENU_WIDTH, ROW)
-        WordPicker(ui, menu, names, take.body, lambda name: self._go(target, name), self._box)
+        WordPicker(ui, menu, names, take.chosen.name, lambda name: self._go(target, name), self._box)
         (self._ask if target is None else self._answer)()
 
     def _reopen(self, ui: Ui) -> None:
-        show_take_home(ui, self._world, self._say, self._take.body, self._target)
+        show_take_home(ui, self._world, self._say, self._take.chosen.name, self._target)
 
     def _go(self, target: str | None, body: str | None = None) -> None:
         self._dialog.end()
-        show_take_home(self._ui, self._world, self._say, body or self._take.body, target)
+        show_take_home(self._ui, self._world, self._say, body or self._take.chosen.name, target)
 
     def _button(self, place: pygame.Rect, text: str, do: Callable[[], None], style: str = "") -> Any:
         return self._ui.button(place, text, do, self._box, style=style)
