@@ -203,11 +203,8 @@ class _Reader:
                 return None
             stops = [child for child in found if local_name(child) == "stop"]
             if stops:
-                own = {"stop-color": stops[0].get("stop-color", "black")}
-                for part in stops[0].get("style", "").split(";"):
-                    key, _, value = part.partition(":")
-                    own[key.strip()] = value.strip()
-                return _colour_of(own["stop-color"], style)
+                own = _declarations(stops[0].get("style", ""))
+                return _colour_of(own.get("stop-color", stops[0].get("stop-color", "black")), style)
             found = self._by_id.get((found.get("href") or found.get(_LINK) or "").removeprefix("#"))
         return None
 
