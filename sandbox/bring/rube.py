@@ -38,7 +38,6 @@ from sandbox.bring.sketch import (
 from sandbox.level.document.model import (
     ContactsDef,
     Level,
-    Material,
     NissenMaterial,
     ParticleDef,
     Settings,
@@ -114,11 +113,6 @@ class JoinedBodies:
     welds: list[tuple[str, str]] = field(default_factory=list)
     passing: list[tuple[str, str]] = field(default_factory=list)
 
-    @property
-    def materials(self) -> dict[str, Material]:
-        """What the springs are made of."""
-        return {MATERIAL: NissenMaterial(stiffness=1.0, damping=1.0)} if self.springs else {}
-
 
 def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: str) -> tuple[Level, LeftOut]:
     """A level of a scene, in its own metres unless a width [m] is told. Raises Unreadable."""
@@ -162,7 +156,7 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
     gravity = _vector(scene, "gravity", GRAVITY_LIMIT)
     level = Level(
         format=FORMAT, version=VERSION, name=name, contacts=ContactsDef(), settings=Settings(gravity=gravity),
-        materials=found.materials,
+        materials={MATERIAL: NissenMaterial(stiffness=1.0, damping=1.0)} if found.springs else {},
     )  # fmt: skip
     level = replaced(
         level, terrain=tuple(terrain), bodies=tuple(found.bodies), particles=tuple(found.particles),

@@ -219,32 +219,26 @@ def coefficient_zones(world: World, material: int | None, stiffness: Floats) -> 
         lam = largest_eigenvalue(world)
 
     def highest(largest_stiffness: float, largest_damping: float, demand: float) -> Floats:
-        return _highest_damping(stiffness, count, largest_stiffness, largest_damping, demand)
+        """The highest Cd (k,) at which Cs, Cd and Cs + 2 Cd of a substep are within bounds; -1 where none is."""
+
+        def is_inside(damping: Floats) -> np.ndarray:
+            # Cs and Cd of a substep grow with both of those of a tick, so bisection finds the edge.
+            each, damp = turned(stiffness, damping, np.zeros(len(stiffness)), count)
+            return (each <= largest_stiffness) & (damp <= largest_damping) & (each + 2.0 * damp < demand)
+
+        low, high = np.zeros(len(stiffness)), np.ones(len(stiffness))
+        nothing, everything = ~is_inside(low), is_inside(high)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            inside = is_inside(middle)
+            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        return np.where(nothing, -1.0, np.where(everything, 1.0, low))
 
     estimated = highest(np.inf, 2.0 / lam, BOUND / lam) if lam > 0.0 else None
     return CoefficientZones(
         stiffness, highest(article, article, np.inf), highest(np.inf, np.inf, limit), estimated, most, False,
         kind.proven_limit,
     )  # fmt: skip
-
-
-def _highest_damping(
-    stiffness: Floats, substeps: int, largest_stiffness: float, largest_damping: float, demand: float
-) -> Floats:
-    """The highest Cd (k,) per tick at which Cs, Cd and Cs + 2 Cd of a substep are within bounds; -1 where none is."""
-
-    def is_inside(damping: Floats) -> np.ndarray:
-        # Cs and Cd of a substep grow with both of those of a tick, so bisection finds the edge.
-        each, damp = turned(stiffness, damping, np.zeros(len(stiffness)), substeps)
-        return (each <= largest_stiffness) & (damp <= largest_damping) & (each + 2.0 * damp < demand)
-
-    low, high = np.zeros(len(stiffness)), np.ones(len(stiffness))
-    nothing, everything = ~is_inside(low), is_inside(high)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        inside = is_inside(middle)
-        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return np.where(nothing, -1.0, np.where(everything, 1.0, low))
 
 
 def most_springs(world: World, material: int | None = None) -> int:
