@@ -1,4 +1,4 @@
-"""Columns of jelly boxes, alone or on one another, that are higher than they can stand: see analysis/column.py."""
+"""Columns of jelly boxes, alone or on one another, that are higher than they can stand: see `critical_height`."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

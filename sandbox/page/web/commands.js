@@ -61,7 +61,7 @@ export class Commands {
   #names;
   #second;
 
-  /** about: what Python says, see about.py; names and second: of the rows there are, which may grow.
+  /** about: what Python says, see start.py; names and second: of the rows there are, which may grow.
    * @param {About} about @param {Record<NameKind, string[]>} names @param {About['second']} second */
   constructor(about, names, second) {
     this.#about = about;

@@ -9,7 +9,7 @@ export type Box = [number, number, number, number];
 export type Numbers = ArrayLike<number> & Iterable<number>;
 export type AnyArray = Float64Array | Float32Array | BigInt64Array | Uint32Array | Int32Array | Int8Array | Uint8Array;
 
-// ---- A world: about.py and start.py
+// ---- A world: start.py
 
 export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator' | 'hand' | 'setting' | 'rule' | 'counter'
   | 'probe' | 'still' | 'key' | 'deed';
@@ -467,7 +467,7 @@ export interface KitNames {
   second: [name: string, slot: number][];
 }
 
-// The tables of kits: adding.py.
+// The tables of kits: start.py.
 export interface KitTable {
   parts: string[];
   families: Record<string, keyof Counts>;
@@ -507,7 +507,7 @@ export interface Pair {
   damping: number;
 }
 
-// What a page must know to make kits: see adding.py.
+// What a page must know to make kits: see start.py.
 export interface Adding {
   surface: { friction: number; restitution: number; group: string; collides: string };
   body: { friction: number; restitution: number; group: string; collides: string };

@@ -84,7 +84,7 @@ export class World {
   /** @type {number[]} */
   broken = [];
 
-  /** kernels: what the module exports; image: the block as bytes; about: what Python says of both, see about.py.
+  /** kernels: what the module exports; image: the block as bytes; about: what Python says of both, see start.py.
    * @param {Kernels} kernels @param {Uint8Array} image @param {About} about */
   constructor(kernels, image, about) {
     this.#kernels = kernels;
@@ -120,7 +120,7 @@ export class World {
     Object.defineProperty(this.names, 'form', { enumerable: false, get: () => this.#formNames(this.#forms) });
   }
 
-  /** Names of bodies whose form may be stiff, by their numbers: of one that was cut its pieces, as firm_bodies.py has it.
+  /** Names of bodies whose form may be stiff, by their numbers: of one that was cut its pieces, as firmness.py has it.
    * @type {(bodies: string[]) => string[]} */
   #formNames(bodies) {
     if (!bodies.length) return [];
