@@ -336,12 +336,12 @@ class SagMeters:
         self._kept: dict[str, tuple[tuple[object, ...], SupportedBody]] = {}
         self._meters: dict[tuple[object, ...], SagMeter] = {}
 
-    def of(self, world: World, subject: MeasuredBody) -> SagMeter:
+    def of(self, world: World, measured: MeasuredBody) -> SagMeter:
         """The meter of a body as it is held now."""
-        made_of = (id(world), world.topology_version, subject.body.shape, world.settings.gravity)
-        kept = self._kept.get(subject.name)
+        made_of = (id(world), world.topology_version, measured.body.shape, world.settings.gravity)
+        kept = self._kept.get(measured.name)
         if kept is None or kept[0] != made_of:
-            kept = self._kept[subject.name] = made_of, supported_body(world, subject.body)
+            kept = self._kept[measured.name] = made_of, supported_body(world, measured.body)
         supported = kept[1]
         settings = replace(world.settings, wind=(0.0, 0.0))
         places = supported.points - supported.points.min(axis=0)
@@ -352,7 +352,7 @@ class SagMeters:
             *(np.round(each, ALIKE).tobytes() for each in about),
         )  # fmt: skip
         if key not in self._meters:
-            self._meters[key] = SagMeter(supported, settings, subject.lowest_mode)
+            self._meters[key] = SagMeter(supported, settings, measured.lowest_mode)
         return self._meters[key]
 
     @property
