@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.format.level_error import shown
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
 
 Object = Mapping[str, Any]
 Ring = NDArray[np.float64]
