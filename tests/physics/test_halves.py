@@ -18,6 +18,7 @@ from sandbox.physics.solvers.linear import elimination, fronts
 from tests.bench import scenes
 from tests.physics.test_large import mesh, play, run
 from tests.support.laid_out import laid_out
+from tests.support.wholes import part_and_whole
 
 
 @pytest.fixture(autouse=True)
@@ -65,7 +66,7 @@ def test_halves_and_the_sparse_factorisation_agree(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("way", ["library", "interpreted"])
+@pytest.mark.parametrize("way", part_and_whole("library", "interpreted"))
 def test_a_fresh_process_computes_the_same_bits_of_halves(way):
     code = "from tests.physics.test_halves import *; fronts.WORTH_HALVING = 1; print(hash_after_play(8))"
     environment = {**os.environ, "SANDBOX_KERNELS": way, "PYTHONPATH": os.pathsep.join(sys.path)}
