@@ -20,7 +20,7 @@ from sandbox.app.draw import scene, textures
 from sandbox.app.draw.colours import ThemeName
 from sandbox.app.draw.looks import STRANDS
 from sandbox.app.share.playing import NOT_MEASURED
-from sandbox.app.sound import bank, timbre, waves
+from sandbox.app.sound import sound_events, waves
 from sandbox.editor.items import Kind as ItemKind
 from sandbox.editor.lint.finding import Severity
 from sandbox.editor.panel import rule_form
@@ -116,7 +116,7 @@ REST = {
     "sandbox.level.kinds.expansion.outline_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.physics.collision.pieces._find_soft: state.edge[s]": {"LINE", "NO_EDGE"},
     # Those that run from their first end to their second.
-    "sandbox.app.draw.things.treads.body_treads: state.edge[running]": {"SOLID_LEFT", "NO_EDGE"},
+    "sandbox.app.draw.things.belt_marks.body_belts: state.edge[running]": {"SOLID_LEFT", "NO_EDGE"},
     # How far the lowest point is down.
     "sandbox.physics.softness.settling._drop: body.support": {
         Support.ARM, Support.HANGING, Support.HUB, Support.SPANNED
@@ -128,20 +128,20 @@ REST = {
     "sandbox.app.edit.canvas.picking._KINDS": {"particle", "box", ""},
     # Have no tile: coils are drawn by wire.
     "sandbox.app.draw.textures._TILES": {"coil", "hidden"},
-    "sandbox.app.draw.things.strands.HALF": set(LINES) - set(STRANDS),
+    "sandbox.app.draw.things.members.HALF": set(LINES) - set(STRANDS),
     # No tag, and no line of its own.
     "sandbox.app.edit.canvas.overlay.draw_snap: snapped.kind": {"grid"},
     "sandbox.app.edit.edit_screen.status: finding.severity": {"hint"},
 }  # fmt: skip
 # Tables and chains of exceptions: whoever comes is usual there, and they say how.
 EXCEPTIONS = {
-    "sandbox.app.draw.looks.PAINTS", "sandbox.app.draw.looks._skin: body.type",
+    "sandbox.app.draw.colours.PAINTS", "sandbox.app.draw.looks._skin: body.type",
     "sandbox.app.draw.looks._line: body.type", "sandbox.app.draw.backdrop._draw_solids: kind",
     "sandbox.app.draw.scene._solid: kind",
     "sandbox.app.draw.scene._body: actor.body.type", "sandbox.app.draw.things.drawables._add: kind",
     "sandbox.app.draw.things.members._LINES", "sandbox.app.draw.things.members._BOLTS",
     "sandbox.app.draw.things.members._PLAIN", "sandbox.app.draw.things.soft.shape_of: look.skin",
-    "sandbox.app.draw.things.strands.PERIOD", "sandbox.app.draw.things.strands._LINES",
+    "sandbox.app.draw.things.members.PERIOD", "sandbox.app.draw.things.members._STRAND_LINES",
     # A field of text, or with a value in it.
     "sandbox.app.widgets.property_widgets._make: about.kind",
     "sandbox.app.widgets.property_widgets._show_value: each.about.kind",
@@ -288,11 +288,14 @@ def keys_in_page(module, name):
         (rule_form._ASKS, set(ASKS) - set(GROUPS) | {"inside"}),
         (reference_faults._NOUNS, {*SUBJECTS, "zone"}),
         (textures._SKINS, {*SKINS} | SHAPE_SKINS | WHEEL_SKINS),
-        (timbre._SKINS, {*SKINS} - {"lattice"} | WHEEL_SKINS),
-        (timbre._LINES, {*LINES} - STRINGS | {"piston"}),
-        (bank.MAKERS, bank.LEVELS.keys() | bank.SIGNAL_LEVELS),
-        (bank.SIGNAL_LEVELS, {*get_args(Sound), "won", "lost", "star"}),
-        (waves.STUFFS, {*timbre._SKINS.values(), *timbre._LINES.values(), *timbre._BALLS.values(), "cloth"}),
+        (sound_events._SKINS, {*SKINS} - {"lattice"} | WHEEL_SKINS),
+        (sound_events._LINES, {*LINES} - STRINGS | {"piston"}),
+        (waves.MAKERS, waves.LEVELS.keys() | waves.SIGNAL_LEVELS),
+        (waves.SIGNAL_LEVELS, {*get_args(Sound), "won", "lost", "star"}),
+        (
+            waves.STUFFS,
+            {*sound_events._SKINS.values(), *sound_events._LINES.values(), *sound_events._BALLS.values(), "cloth"},
+        ),
         (start.CODES, CODES["codes of a tick"]),
         (start.PROGRESS, code_names(block, "TICK") - {"PROGRESS"}),
         (constraints.CONSTRAINT_NAMES, range(len(CODES["kinds of constraints"]))),

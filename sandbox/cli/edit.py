@@ -19,7 +19,7 @@ def edit(options: EditOptions) -> int:
 
     if not has_display():
         raise Refused("the editor needs a display; without one, edit the level's JSON and try `sandbox check`")
-    from sandbox.app.base.start_request import StartRequest
+    from sandbox.app.base.display import StartRequest
     from sandbox.app.window.opening import open_app
 
     def find() -> StartRequest:

@@ -18,8 +18,8 @@ class LinkOptions:
 
 def link(options: LinkOptions) -> int:
     """Print a link that holds a recorded run. Raises Refused."""
-    from sandbox.app.share.links import link_to
-    from sandbox.app.share.runs_for_pages import all_at_once
+    from sandbox.app.base.loop import at_once
+    from sandbox.app.share.runs_for_pages import link_to
     from sandbox.session.replay.recording import ReplayError
 
     replay = recording_of(options.replay)
@@ -27,7 +27,7 @@ def link(options: LinkOptions) -> int:
     if at > replay.ticks:
         raise Refused(f"--at {options.at:g} s is behind the end of the run, {replay.ticks} ticks")
     try:
-        print(all_at_once(link_to(replay, options.site, at)))
+        print(at_once(link_to(replay, options.site, at)))
     except ReplayError as error:
         raise Refused(*error.faults) from None
     return EXIT_OK

@@ -33,7 +33,7 @@ def play(options: PlayOptions) -> int:
     if not has_display():
         level, replay = level_or_replay(options.level or "rope_bridge_jelly")
         return _play_headless(level, replay)
-    from sandbox.app.base.start_request import StartRequest
+    from sandbox.app.base.display import StartRequest
     from sandbox.app.window.opening import open_app
 
     def find() -> StartRequest:

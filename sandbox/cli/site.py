@@ -29,8 +29,7 @@ class SiteOptions:
 
 def site(options: SiteOptions) -> int:
     """Write the site, and tell how large it is. Raises Refused."""
-    from sandbox.app.site.index_page import IndexPage, SiteLevel
-    from sandbox.app.site.link_card import is_address
+    from sandbox.app.site.index_page import IndexPage, SiteLevel, is_address
     from sandbox.app.site.site import write_site
     from sandbox.level.reading.files import shipped_levels
 

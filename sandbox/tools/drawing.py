@@ -34,7 +34,7 @@ NO_ROOM = "There is no room for it here. Draw it where it is free."
 
 
 @dataclass(frozen=True)
-class DrawnStuff:
+class PartMaterial:
     """What a drawn body is made of: its name; Cs and Cd; mass of a square metre [kg/m^2]; and what a file says more."""
 
     name: str
@@ -44,12 +44,14 @@ class DrawnStuff:
     more: dict[str, Any] = field(default_factory=dict)
 
 
-STUFFS = {
-    stuff.name: stuff
-    for stuff in (
-        DrawnStuff("jelly", 0.75, 0.7, more={"look": {"skin": "jelly", "face": True}}),
-        DrawnStuff("wood", 0.995, 0.995, more={"friction": 0.6, "look": {"skin": "wood"}}),
-        DrawnStuff("steel", 1.0, 1.0, 5.0 * DENSITY, {"friction": 0.3, "look": {"skin": "plain", "colour": "#8E99A8"}}),
+MATERIALS = {
+    material.name: material
+    for material in (
+        PartMaterial("jelly", 0.75, 0.7, more={"look": {"skin": "jelly", "face": True}}),
+        PartMaterial("wood", 0.995, 0.995, more={"friction": 0.6, "look": {"skin": "wood"}}),
+        PartMaterial(
+            "steel", 1.0, 1.0, 5.0 * DENSITY, {"friction": 0.3, "look": {"skin": "plain", "colour": "#8E99A8"}}
+        ),
     )
 }
 
@@ -58,37 +60,37 @@ class Unfit(ValueError):
     """An outline that no body can have; its text is a sentence for the person."""
 
 
-def meshed(corners: Loop, stuff: DrawnStuff, colour: str) -> AddBody:
+def meshed(corners: Loop, material: PartMaterial, colour: str) -> AddBody:
     """The command that adds a body inside an outline [m]. Raises Unfit."""
     code, arena = answer_of(fitting.fill_outline, fitting.USUAL_ARENA, rows_of([corners])[0])
     if code != fitting.FITS:
         raise Unfit(REFUSALS[code])
     mesh = fitting.found_in(arena)
     count = len(mesh.places)
-    name = f"drawn {stuff.name}"
+    name = f"drawn {material.name}"
     body = {
         "type": "mesh",
-        "id": stuff.name,
+        "id": material.name,
         "particles": mesh.places.tolist(),
-        "masses": [significant(stuff.density * mesh.area / count, DIGITS)] * count,
+        "masses": [significant(material.density * mesh.area / count, DIGITS)] * count,
         "springs": mesh.pairs.tolist(),
         "triangles": mesh.triangles.tolist(),
         "particle_radius": significant(min(SKIN * mesh.spacing, THICKEST), DIGITS),
         "material": name,
-        **stuff.more,
-        "look": stuff.more["look"] | ({"colour": colour} if stuff.name == "jelly" else {}),
+        **material.more,
+        "look": material.more["look"] | ({"colour": colour} if material.name == "jelly" else {}),
     }
-    return AddBody(body, materials={name: {"stiffness": stuff.stiffness, "damping": stuff.damping}})
+    return AddBody(body, materials={name: {"stiffness": material.stiffness, "damping": material.damping}})
 
 
 class StrokeTool(PlacedTool):
-    """Draw a body of the stuff of that name: a press, a stroke around it, a release. Jellies take colours in turn."""
+    """Draw a body of a material, by its name: a press, a stroke around it, a release. Jellies take colours in turn."""
 
     adds = True
 
-    def __init__(self, new_gesture: Callable[[], int], stuff: str) -> None:
+    def __init__(self, new_gesture: Callable[[], int], material: str) -> None:
         super().__init__(new_gesture)
-        self._stuff = STUFFS[stuff]
+        self._material = MATERIALS[material]
         self._stroke: Loop = []
         self._is_drawing = False
         self.count = 0
@@ -124,7 +126,7 @@ class StrokeTool(PlacedTool):
             raise Unfit(NO_ROOM)
         raised = [(x, y + by) for x, y in corners]
         colour = COLOURS[self.count % len(COLOURS)]
-        command = in_pace(meshed(raised, self._stuff, colour), snapshot.settings.tick_rate)
+        command = in_pace(meshed(raised, self._material, colour), snapshot.settings.tick_rate)
         assert isinstance(command, AddBody)
         return command
 
@@ -150,6 +152,6 @@ _LINES = {
     "steel": ("Shift+3", "Draw something of steel"),
 }
 DRAWN = tuple(
-    PlayTool(f"draw_{name}", (key,), label, "Parts", partial(StrokeTool, stuff=name), "add")
+    PlayTool(f"draw_{name}", (key,), label, "Parts", partial(StrokeTool, material=name), "add")
     for name, (key, label) in _LINES.items()
 )

@@ -24,8 +24,7 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.base.display import SCALE_RANGE, Display
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base.display import SCALE_RANGE, Display, StartRequest
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.edit.side.side import PAGES, UNLISTED
 from sandbox.app.run.playback import Playback

@@ -12,9 +12,8 @@ import time
 import pygame
 import pytest
 
-from sandbox.app.base.display import Display
+from sandbox.app.base.display import Display, StartRequest
 from sandbox.app.base.idle import REST
-from sandbox.app.base.start_request import StartRequest
 from sandbox.app.panel.panel import MORE
 from sandbox.app.play.play_screen import FOLD
 from sandbox.app.window.app import App
@@ -284,10 +283,8 @@ def documents(tmp_path, monkeypatch):
     monkeypatch.setattr(
         "sandbox.editor.storage.preferences.platformdirs.user_data_dir", lambda *_, **__: str(tmp_path / "data")
     )
-    monkeypatch.setattr("sandbox.app.base.recordings.platformdirs.user_documents_dir", lambda: str(tmp_path))
-    monkeypatch.setattr(
-        "sandbox.app.base.recordings.platformdirs.user_pictures_dir", lambda: str(tmp_path / "pictures")
-    )
+    monkeypatch.setattr("sandbox.app.base.desktop.platformdirs.user_documents_dir", lambda: str(tmp_path))
+    monkeypatch.setattr("sandbox.app.base.desktop.platformdirs.user_pictures_dir", lambda: str(tmp_path / "pictures"))
     monkeypatch.setattr(
         "sandbox.app.draw.picture_cache.platformdirs.user_cache_dir", lambda *_, **__: str(tmp_path / "cache")
     )

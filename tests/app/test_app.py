@@ -10,9 +10,8 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.base.display import has_display
+from sandbox.app.base.display import StartRequest, has_display
 from sandbox.app.base.shortcuts import action_of, hint, shortcuts
-from sandbox.app.base.start_request import StartRequest
 from sandbox.app.contracts.screen import Figures
 from sandbox.app.widgets.scroll import BAR_WIDTH
 from sandbox.app.window.opening import open_app
@@ -428,8 +427,8 @@ def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):
 
 def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
     now, shown = [0.0], []
-    monkeypatch.setattr("sandbox.app.window.progress.time.perf_counter", lambda: now[0])
-    monkeypatch.setattr("sandbox.app.window.progress.draw_work", lambda surface, ui, share, *_: shown.append(share))
+    monkeypatch.setattr("sandbox.app.play.status.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.play.status.draw_work", lambda surface, ui, share, *_: shown.append(share))
     for done in range(0, 1000, 100):
         now[0] += 0.06
         driver.playback.session.progress(done, 1000)
@@ -438,7 +437,7 @@ def test_a_long_run_played_again_shows_how_far_it_is(driver, monkeypatch):
 
 def test_keys_pressed_while_a_run_is_played_again_are_not_typed_into_what_comes_after_it(driver, monkeypatch):
     now, actions = [0.0], driver.app.screen.actions
-    monkeypatch.setattr("sandbox.app.window.progress.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("sandbox.app.play.status.time.perf_counter", lambda: now[0])
 
     def played_again(key):
         for done in range(0, 1000, 100):

@@ -6,12 +6,10 @@ from types import SimpleNamespace
 import pygame
 import pytest
 
-from sandbox.app.base import calm
-from sandbox.app.base.calm import CALM_AFTER, CALM_RATE, RESTING_RATE, Calm
-from sandbox.app.base.display import Display
-from sandbox.app.base.loop import FRAME_RATE
-from sandbox.app.base.profile import Profile
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base import idle
+from sandbox.app.base.display import Display, StartRequest
+from sandbox.app.base.idle import IDLE_AFTER, IDLE_RATE, RESTING_RATE, IdleTimer
+from sandbox.app.base.loop import FRAME_RATE, Profile
 from sandbox.app.play.stage import AT_REST_AFTER
 from sandbox.app.window.app import App, run_app
 from sandbox.physics.snapshot import state_hash
@@ -41,7 +39,7 @@ class FakeTime:
 def fake_time(monkeypatch):
     made = FakeTime()
     monkeypatch.setattr("sandbox.app.window.app.time", made)
-    monkeypatch.setattr(calm, "time", made)
+    monkeypatch.setattr(idle, "time", made)
     return made
 
 
@@ -52,15 +50,15 @@ def key_event(kind, key):
 def let_calm_come(driver):
     """Do nothing for long enough; whether the loop may go slowly then."""
     driver.app.status.notices.clear()
-    driver.pass_unseen(round((AT_REST_AFTER + 1.6 * CALM_AFTER) / FRAME))
-    return driver.app.calm.has_come
+    driver.pass_unseen(round((AT_REST_AFTER + 1.6 * IDLE_AFTER) / FRAME))
+    return driver.app.idle.has_come
 
 
 def test_calm_comes_after_a_while_in_which_nothing_happens_and_goes_at_once():
-    followed = Calm()
-    followed.follow(0.9 * CALM_AFTER, is_busy=False)
+    followed = IdleTimer()
+    followed.follow(0.9 * IDLE_AFTER, is_busy=False)
     assert not followed.has_come
-    followed.follow(0.2 * CALM_AFTER, is_busy=False)
+    followed.follow(0.2 * IDLE_AFTER, is_busy=False)
     assert followed.has_come
     followed.follow(FRAME, is_busy=True)
     assert not followed.has_come
@@ -68,7 +66,7 @@ def test_calm_comes_after_a_while_in_which_nothing_happens_and_goes_at_once():
 
 def test_waiting_ends_at_an_event_which_stays_in_the_queue_in_its_order(driver, fake_time):
     pygame.event.clear()
-    assert not calm.wait_for_event(0.1) and fake_time.now == pytest.approx(0.1)
+    assert not idle.wait_for_event(0.1) and fake_time.now == pytest.approx(0.1)
 
     def type_two():
         if fake_time.now > 0.15:
@@ -77,8 +75,8 @@ def test_waiting_ends_at_an_event_which_stays_in_the_queue_in_its_order(driver, 
                 pygame.event.post(key_event(pygame.KEYDOWN, key))
 
     fake_time.on_nap = type_two
-    assert calm.wait_for_event(10.0) and fake_time.now < 0.15 + 2 * calm.NAP
-    assert calm.wait_for_event(10.0) and fake_time.now < 0.15 + 2 * calm.NAP
+    assert idle.wait_for_event(10.0) and fake_time.now < 0.15 + 2 * idle._NAP
+    assert idle.wait_for_event(10.0) and fake_time.now < 0.15 + 2 * idle._NAP
     assert [event.key for event in pygame.event.get(pygame.KEYDOWN)] == [pygame.K_a, pygame.K_b]
 
 
@@ -103,19 +101,19 @@ def pull_up(driver):
 
 def test_a_run_in_which_nothing_moves_is_calm_goes_on_tick_by_tick_and_wakes_at_once(open_app):
     driver = open_app(ball())
-    assert let_calm_come(driver) and driver.app.calm_rate == RESTING_RATE
+    assert let_calm_come(driver) and driver.app.idle_rate == RESTING_RATE
     assert driver.app.play.rests and driver.app.play.runs
     before = driver.playback.session.tick
     for _ in range(10):
         driver.app.frame(1.0 / RESTING_RATE)
     assert driver.playback.session.tick == before + 10 * 60 // RESTING_RATE
-    assert driver.app.calm.has_come and driver.stage.detail.level == 0
+    assert driver.app.idle.has_come and driver.stage.detail.level == 0
     pull_up(driver)
     driver.app.frame(1.0 / RESTING_RATE)
     driver.app.frame(1.0 / RESTING_RATE)
-    assert not driver.app.calm.has_come and not driver.app.play.rests
+    assert not driver.app.idle.has_come and not driver.app.play.rests
     driver.app.act("pause")
-    assert let_calm_come(driver) and driver.app.calm_rate == CALM_RATE
+    assert let_calm_come(driver) and driver.app.idle_rate == IDLE_RATE
 
 
 def test_what_comes_to_rest_at_a_low_rate_of_frames_has_the_bits_of_every_other_run(open_app):
@@ -146,7 +144,7 @@ def test_both_halves_of_a_comparison_come_to_rest(open_app):
     assert let_calm_come(driver)
     driver.app.play.other.submit(Push((0.0, 0.5), 2.0, (0.0, 6.0)))
     driver.pass_unseen(4)
-    assert not driver.app.calm.has_come
+    assert not driver.app.idle.has_come
 
 
 def test_a_run_moves_until_it_is_paused_and_a_page_over_it_stops_it(swinging):
@@ -155,7 +153,7 @@ def test_a_run_moves_until_it_is_paused_and_a_page_over_it_stops_it(swinging):
     driver.app.act("pause")
     assert let_calm_come(driver)
     driver.key(pygame.K_PERIOD)
-    assert not driver.app.calm.has_come
+    assert not driver.app.idle.has_come
     driver.app.act("pause")
     assert not let_calm_come(driver)
     driver.app.act("help")
@@ -167,10 +165,10 @@ def test_notices_wake_it_to_fade_and_pictures_stay_as_detailed_as_they_were(driv
     assert let_calm_come(driver)
     driver.app.say("A line.")
     driver.app.frame(0.1)
-    assert driver.app.calm.has_come
+    assert driver.app.idle.has_come
     driver.app.status.notices[0].left = 0.65
     driver.app.frame(0.1)
-    assert not driver.app.calm.has_come
+    assert not driver.app.idle.has_come
     for _ in range(60):
         driver.app.frame(0.1)
     assert not driver.app.status.notices
@@ -188,12 +186,12 @@ def test_an_editor_that_has_said_what_it_found_rests_until_the_level_is_another(
     assert let_calm_come(driver)
     driver.editor.watch.toggle_forecast()
     driver.app.frame(0.1)
-    assert not driver.app.calm.has_come
+    assert not driver.app.idle.has_come
     assert let_calm_come(driver)
     assert driver.editor.watch.hanging is not None
     driver.editor.show((0.0, 0.0))
     driver.app.frame(0.1)
-    assert not driver.app.calm.has_come
+    assert not driver.app.idle.has_come
     driver.editor.show_parts()
     assert let_calm_come(driver) and len(driver.editor.side.page._unfilled) == 0
 
@@ -250,8 +248,8 @@ def test_the_loop_slows_down_wakes_at_a_key_and_makes_up_for_no_time_that_it_sle
     profile = Profile()
     run_app(Display(1.0), StartRequest(small_level()), profile, 20.0, {})
     slow = [each for each in times if each > 1.5 / FRAME_RATE]
-    assert slow == pytest.approx([1.0 / CALM_RATE] * len(slow)) and 17 <= len(slow) <= 20
-    assert fake_time.now - asked[0] < 2 * calm.NAP
+    assert slow == pytest.approx([1.0 / IDLE_RATE] * len(slow)) and 17 <= len(slow) <= 20
+    assert fake_time.now - asked[0] < 2 * idle._NAP
     assert times[-1] <= 1.0 / FRAME_RATE + 1e-9 and ticks[-1] <= 1
     assert profile.frames == len(times)
 

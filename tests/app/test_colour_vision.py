@@ -7,9 +7,8 @@ matrices of full severity, on linear RGB. Distances are those of CIELAB, of whic
 import numpy as np
 import pytest
 
-from sandbox.app.draw.strain_colours import SLIGHT_STRAIN, strain_place, strain_tones
-from sandbox.app.draw.themes import THEMES
-from sandbox.app.draw.views.overlays import stability_tones
+from sandbox.app.draw.colours import THEMES
+from sandbox.app.draw.overlays import SLIGHT_STRAIN, stability_tones, strain_place, strain_tones
 
 VISION = {
     "usual": np.eye(3),

@@ -10,15 +10,15 @@ from hypothesis import strategies as st
 
 from sandbox.app.base.loop import LONGEST_FRAME, SPEEDS, TickClock
 from sandbox.app.draw.camera import Camera, bounds, grid_spacing
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.lines import Canvas
+from sandbox.app.draw.overlays import strain_tones
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
 from sandbox.app.draw.raster.bodies import BodyRows, Flush, Outlines, Skins
-from sandbox.app.draw.raster.cells import SHEET, CellArrays
+from sandbox.app.draw.raster.marks import SHEET, CellArrays
 from sandbox.app.draw.raster.painter import BodyLayer, MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.draw.strain_colours import strain_tones
 from sandbox.app.draw.textures import Tiles, grains, skin_table
-from sandbox.app.draw.themes import THEMES
 from sandbox.app.run.playback import Playback, interpolated
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level

@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.base.recordings import chosen_path, free_path, plain_name
+from sandbox.app.base.desktop import chosen_path, free_path, plain_name
 from sandbox.editor.storage.preferences import remember
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import shipped_levels

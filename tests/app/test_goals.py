@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pygame
 import pytest
+from sandbox.app.play.score import Chip, chips_of, time_text
 
-from sandbox.app.play.goals.score import Chip, chips_of, told_time
 from sandbox.editor.storage.best_runs import best_recording, best_result
 from sandbox.editor.storage.preferences import remember
 from sandbox.level.reading.files import parse_level
@@ -87,7 +87,7 @@ def test_a_win_pauses_where_it_happens_and_its_card_says_words_stars_and_time(fa
     result, card = outcome(falling.playback.level, falling.world), game(falling).card
     assert falling.playback.clock.paused and falling.playback.session.tick == result.tick
     assert card.ending.words == "It is in!" and result.stars == 2
-    assert card.ending.times[0][0] == f"Time {told_time(result.tick / 60)}"
+    assert card.ending.times[0][0] == f"Time {time_text(result.tick / 60)}"
     assert list(card.buttons) == ["Again", "Keep watching"]
     assert kinds == ["bell", "won", "star", "star"]
     assert "Through the ring!" in falling.notices
@@ -264,7 +264,7 @@ def test_a_best_run_is_kept_with_a_recording_that_holds_and_only_a_better_one_ta
     written = path.read_bytes()
     falling.key(pygame.K_r)
     play_to_the_end(falling)
-    assert game(falling).card.ending.times[1][0] == f"Best {told_time(kept.seconds)}"
+    assert game(falling).card.ending.times[1][0] == f"Best {time_text(kept.seconds)}"
     falling.frames(30)
     assert path.read_bytes() == written
     falling.key(pygame.K_r)
@@ -367,7 +367,7 @@ def test_cards_of_the_gallery_show_stars_and_time(open_app, tmp_path):
     driver = open_app(None)
     driver.app.files.open_level(path)
     play_to_the_end(driver)
-    time = told_time(game(driver).result.tick / 60)
+    time = time_text(game(driver).result.tick / 60)
     remember(path)
     driver.app.open_gallery("mine")
     driver.frames(40)
@@ -426,7 +426,7 @@ def test_a_clock_counts_down_to_the_time_at_which_the_run_is_lost(losing):
 
 
 def test_times_are_told_to_the_hundredth_that_is_over():
-    assert [told_time(value) for value in (0.0, 3.7, 59.999, 60.0, 125.25)] == [
+    assert [time_text(value) for value in (0.0, 3.7, 59.999, 60.0, 125.25)] == [
         "0.00 s",
         "3.70 s",
         "59.99 s",

@@ -7,8 +7,7 @@ import pygame
 import pytest
 
 from sandbox.app.graphs.chart import Chart, GraphLine, nice_step, number_text
-from sandbox.app.graphs.measures import MEASURES
-from sandbox.app.graphs.tracks import MOST_NAMES, Track
+from sandbox.app.graphs.graph_dock import MEASURES, MOST_NAMES, Track
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.session import Session

@@ -5,7 +5,7 @@ import weakref
 
 import pytest
 
-from sandbox.app.base.idle import ENOUGH, REST, IdleCollector
+from sandbox.app.base.idle import _ENOUGH, REST, IdleCollector
 from sandbox.app.draw.raster.painter import _scratch_for, _scratches
 from sandbox.app.run.playback import Playback
 from tests.app.conftest import small_level
@@ -18,7 +18,7 @@ def collector():
     made.close()
 
 
-def litter(count=ENOUGH):
+def litter(count=_ENOUGH):
     """Make garbage that only a search can find."""
     for _ in range(count):
         ring = []
@@ -30,11 +30,11 @@ def test_nothing_is_searched_while_somebody_works_and_all_new_garbage_is_found_i
     litter()
     for _ in range(100):
         collector.update(REST / 2, is_busy=True)
-    assert gc.get_count()[0] >= ENOUGH
+    assert gc.get_count()[0] >= _ENOUGH
     collector.update(REST / 2, is_busy=False)
-    assert gc.get_count()[0] >= ENOUGH
+    assert gc.get_count()[0] >= _ENOUGH
     collector.update(REST / 2, is_busy=False)
-    assert gc.get_count()[0] < ENOUGH
+    assert gc.get_count()[0] < _ENOUGH
 
 
 def test_a_pause_in_which_there_is_little_to_find_is_left_alone(collector):

@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from sandbox.app.base import desktop
-from sandbox.app.share.link_copying import so_far
+from sandbox.app.share.page import so_far
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings
 from sandbox.session.compare.comparison import verify

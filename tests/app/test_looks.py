@@ -7,17 +7,16 @@ import pygame
 import pytest
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.looks import ball_look, body_looks, ground_look, spring_look
 from sandbox.app.draw.picture import draw_picture
-from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG
+from sandbox.app.draw.raster.marks import ACROSS, ALONG
 from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.draw.themes import THEMES
-from sandbox.app.draw.things.balls import Balls
-from sandbox.app.draw.things.borders import chains_of, hull_of, sides_of, trace_loops
 from sandbox.app.draw.things.drawables import Drawables
-from sandbox.app.draw.things.level_slots import level_slots_of
+from sandbox.app.draw.things.level_slots import chains_of, hull_of, level_slots_of, sides_of, trace_loops
+from sandbox.app.draw.things.wheels import Balls
 from sandbox.level.format.look import LINES, PALETTE, SKINS
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.level.reading.parse import parse_level

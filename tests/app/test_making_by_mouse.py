@@ -5,7 +5,7 @@ import math
 import pygame
 import pytest
 
-from sandbox.app.play.palette import NAMES, refused_tools
+from sandbox.app.play.toolbar import NAMES, refused_tools
 from sandbox.level.format.quantities import replaced
 from sandbox.level.rules.hands import HandsDef
 from sandbox.physics.meshing.fitting import CROSSES

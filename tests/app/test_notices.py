@@ -4,9 +4,9 @@ import pygame
 import pytest
 
 from sandbox.app.draw.colours import TEXT
-from sandbox.app.play.key_caps import KEYS_HEIGHT
-from sandbox.app.play.palette import PartsPalette
+from sandbox.app.play.drive_keys import KEYS_HEIGHT
 from sandbox.app.play.status import STATUS_HEIGHT
+from sandbox.app.play.toolbar import PartsPalette
 from sandbox.app.run.playback import Playback
 from sandbox.level.reading.files import load_level
 from tests.app.conftest import small_level
@@ -128,7 +128,7 @@ def test_what_is_said_of_a_run_ends_with_it_and_what_is_said_of_files_stays(driv
 
 
 def test_what_went_out_of_bounds_is_said_in_plain_words_and_its_numbers_behind_details(driver):
-    details = driver.app.play.troubles.remedies.buttons["details"]
+    details = driver.app.play.problems.quick_fixes.buttons["details"]
     assert not details.visible
     for name in ("rope.2", "rope.3"):
         driver.world.velocity[driver.world.particle_slot(name)] = 1e300

@@ -3,8 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.base.display import Display
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base.display import Display, StartRequest
 from sandbox.app.draw.colours import BACKGROUND, TEXT
 from sandbox.app.window.opening import open_app
 from tests.app.conftest import small_level

@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.play.out_of_view import NOTICE
+from sandbox.app.play.problems import LEFT_VIEW
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.session.commands import MoveBody
@@ -16,11 +16,11 @@ LEVELS = [path.stem for path in shipped_levels() if path.stem != "wrecking_ball"
 
 
 def button(driver):
-    return driver.app.play.troubles.remedies.buttons["bring_back"]
+    return driver.app.play.problems.quick_fixes.buttons["bring_back"]
 
 
 def in_picture(driver, body):
-    left, bottom, right, top = driver.app.play.troubles._pictures[0]
+    left, bottom, right, top = driver.app.play.problems._pictures[0]
     x, y = driver.world.position[body].mean(axis=0)
     return left <= x <= right and bottom <= y <= top
 
@@ -30,13 +30,13 @@ def test_what_has_left_the_picture_is_brought_back_at_rest_and_that_is_undone(op
     driver.frames(10)
     assert not button(driver).visible
     driver.frames(200)
-    assert button(driver).visible and button(driver).text == "Bring back 2" and NOTICE in driver.notices
+    assert button(driver).visible and button(driver).text == "Bring back 2" and LEFT_VIEW in driver.notices
     before = driver.world.position.copy()
     driver.click_widget(button(driver))
     driver.frames(2)
     there = np.stack(list(places(driver).values()))
     assert (np.abs(there) <= [5.0, 3.0]).all() and np.abs(driver.world.velocity).max() < 1e-9
-    assert not button(driver).visible and NOTICE not in driver.notices
+    assert not button(driver).visible and LEFT_VIEW not in driver.notices
     assert "2 are back in the picture." in driver.notices
     driver.key(pygame.K_z, pygame.KMOD_CTRL)
     driver.frames(60)
@@ -51,13 +51,13 @@ def test_what_lies_beside_the_picture_comes_back_into_a_free_place_while_others_
     driver = open_app(load_level("jelly_pile"))
     world = driver.world
     bodies = [np.flatnonzero(world.owner == owner) for owner in np.unique(world.owner[world.owner >= 0])]
-    left, _, right, _ = driver.app.play.troubles._pictures[0]
+    left, _, right, _ = driver.app.play.problems._pictures[0]
     gesture = driver.playback.session.new_gesture()
     for number, body in enumerate(bodies[:3]):
         way = right - left + 3.0 * number
         driver.playback.submit(MoveBody(int(body[0]), (way, 4.0), at_rest=True), gesture)
     driver.pass_unseen(90)
-    assert button(driver).text == "Bring back 3" and NOTICE not in driver.notices
+    assert button(driver).text == "Bring back 3" and LEFT_VIEW not in driver.notices
     others = world.position[bodies[5]].mean(axis=0)
     driver.click_widget(button(driver))
     driver.frames(2)
@@ -74,7 +74,7 @@ def test_what_was_thrown_up_and_falls_back_has_not_left(open_app):
         driver.pass_unseen(1)
         highest = max(highest, float(driver.world.position[driver.world.particle_slot("ball"), 1]))
         seen.append(bool(button(driver).visible))
-    assert highest > 9.0 and not any(seen) and NOTICE not in driver.notices
+    assert highest > 9.0 and not any(seen) and LEFT_VIEW not in driver.notices
     driver.pass_unseen(150)
     assert button(driver).visible
 
@@ -93,7 +93,7 @@ def test_no_level_has_lost_anything_by_itself_after_some_seconds(open_app, name)
     driver = open_app(load_level(name))
     driver.pass_unseen(240)
     driver.frames(1)
-    assert not button(driver).visible and NOTICE not in driver.notices
+    assert not button(driver).visible and LEFT_VIEW not in driver.notices
 
 
 def test_a_flat_bridge_that_sags_under_its_weight_is_in_the_picture(open_app):
@@ -104,4 +104,4 @@ def test_a_flat_bridge_that_sags_under_its_weight_is_in_the_picture(open_app):
                         settings={"gravity": [0, -9.81], "solver": "direct"})  # fmt: skip
     driver = open_app(level)
     driver.frames(300)
-    assert not button(driver).visible and NOTICE not in driver.notices
+    assert not button(driver).visible and LEFT_VIEW not in driver.notices

@@ -10,13 +10,13 @@ import pytest
 
 from sandbox.app.base.shortcuts import SHORTCUTS
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.effects import Effects
+from sandbox.app.draw.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, names_for, stability_tones
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.draw.textures import Tiles
-from sandbox.app.draw.themes import THEMES
-from sandbox.app.draw.things.frame import Frame
-from sandbox.app.draw.views.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, names_for, stability_tones
+from sandbox.app.draw.things.level_slots import Frame
 from sandbox.app.play.legend import Legend, rows_of
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles, shown_springs

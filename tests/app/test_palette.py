@@ -5,10 +5,10 @@ import pytest
 
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT
-from sandbox.app.draw.part_pictures import PartGhost
-from sandbox.app.play.goals.score import chips_of
-from sandbox.app.play.palette import MORE, NAMES
+from sandbox.app.draw.picture import PartGhost
+from sandbox.app.play.score import chips_of
 from sandbox.app.play.stage import CATALOGUE
+from sandbox.app.play.toolbar import _MORE, NAMES
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
@@ -220,12 +220,12 @@ def test_what_has_no_room_beside_panel_and_graphs_is_in_a_menu(player):
     player.frames(2)
     palette = player.app.play.palette
     assert pygame.Rect(player.app.play.area).contains(palette.back.rect)
-    assert list(palette.buttons) == [*(name for name in NAMES if name not in palette.left_out), MORE]
-    assert set(palette.left_out) | set(palette.buttons) == {*NAMES, CATALOGUE, MORE}
-    player.click_widget(palette.buttons[MORE])
+    assert list(palette.buttons) == [*(name for name in NAMES if name not in palette.left_out), _MORE]
+    assert set(palette.left_out) | set(palette.buttons) == {*NAMES, CATALOGUE, _MORE}
+    player.click_widget(palette.buttons[_MORE])
     hidden = palette.left_out[0]
     player.choose(tip_of(f"tool_{hidden}", "play"))
-    assert player.stage.tool_name == hidden and palette.buttons[MORE].is_selected
+    assert player.stage.tool_name == hidden and palette.buttons[_MORE].is_selected
 
 
 def test_tools_that_a_level_keeps_away_are_greyed_and_parts_that_are_left_are_counted(open_app):

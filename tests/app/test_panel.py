@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
+from sandbox.app.base.sag_map import PLAIN, CoefficientScale
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.commands import SetCoefficients
 from tests.app.conftest import small_level

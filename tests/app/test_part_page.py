@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.parts.part_card import SMALL_TEXT
+from sandbox.app.parts.part_page import SMALL_TEXT
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.editor.storage.part_files import keep_part
 from sandbox.session.compare.comparison import verify

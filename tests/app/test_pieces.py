@@ -6,17 +6,15 @@ import numpy as np
 import pytest
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.picture import draw_picture, view_of
 from sandbox.app.draw.raster.painter import Painter
 from sandbox.app.draw.textures import Tiles
-from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.faces import LEAST_OWN
-from sandbox.app.draw.things.frame import Frame, strain_of
-from sandbox.app.draw.things.level_slots import level_slots_of, whole_triangles
+from sandbox.app.draw.things.level_slots import Frame, level_slots_of, strain_of, whole_triangles
 from sandbox.app.draw.things.soft import FLAT
-from sandbox.app.sound.sound_events import SoundEvents
-from sandbox.app.sound.timbre import timbres_of
+from sandbox.app.sound.sound_events import SoundEvents, timbres_of
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.geometry.segment import winding_number
 from sandbox.session.commands import CutSprings

@@ -5,7 +5,7 @@ import pytest
 
 from sandbox.app.contracts.screen import Figures
 from sandbox.app.panel.panel import ALL_MATERIALS
-from sandbox.app.run.breaks import QUIET, Breaks
+from sandbox.app.run.followers import QUIET, Breaks
 from sandbox.level.reading.files import load_level
 from sandbox.session.session import Session
 from tests.app.conftest import small_level

@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
+from sandbox.app.play.problems import LEFT_VIEW as LEFT_VIEW
 from sandbox.app.play.toolbar import LEAST_NAME, LEFT, RIGHT, fitting
 from tests.app.conftest import small_level
 

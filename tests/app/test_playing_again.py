@@ -19,9 +19,9 @@ def _cancel_while_it_is_played_again(driver, monkeypatch, post):
             post(drawn[0])
         return drawn[0]
 
-    monkeypatch.setattr("sandbox.app.window.progress.PATIENCE", 0.0)
-    monkeypatch.setattr("sandbox.app.window.progress.DRAWN_EVERY", 0.0)
-    monkeypatch.setattr("sandbox.app.window.progress.draw_work", draw)
+    monkeypatch.setattr("sandbox.app.play.status._PATIENCE", 0.0)
+    monkeypatch.setattr("sandbox.app.play.status._DRAWN_EVERY", 0.0)
+    monkeypatch.setattr("sandbox.app.play.status.draw_work", draw)
     return drawn
 
 
@@ -80,8 +80,8 @@ def test_two_runs_side_by_side_are_played_again_together_or_not_at_all(driver, m
     driver.key(pygame.K_F9)
     _played(driver)
     shown = []
-    monkeypatch.setattr("sandbox.app.window.progress.PATIENCE", 0.0)
-    monkeypatch.setattr("sandbox.app.window.progress.draw_bar", lambda *_: shown.append(_press_escape(driver)(None)))
+    monkeypatch.setattr("sandbox.app.play.status._PATIENCE", 0.0)
+    monkeypatch.setattr("sandbox.app.play.status.draw_bar", lambda *_: shown.append(_press_escape(driver)(None)))
     driver.key(pygame.K_z, CTRL)
     driver.key(pygame.K_z, CTRL)
     screen = driver.app.play

@@ -2,7 +2,7 @@
 
 import time
 
-from sandbox.app.base.profile import REMEMBERED, Profile
+from sandbox.app.base.loop import REMEMBERED, Profile
 
 
 def test_a_long_run_is_counted_whole_and_told_by_its_last_frames():

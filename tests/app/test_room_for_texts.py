@@ -133,7 +133,7 @@ def name(widget):
 
 @pytest.mark.parametrize(("size", "scale"), WINDOWS)
 def test_every_screen_of_a_run_has_room_for_all_its_texts(driver, size, scale, monkeypatch):
-    monkeypatch.setattr("sandbox.app.base.recordings.platformdirs.user_pictures_dir", lambda: "/home/ann/Pictures")
+    monkeypatch.setattr("sandbox.app.base.desktop.platformdirs.user_pictures_dir", lambda: "/home/ann/Pictures")
     found = {}
     driver.app.chosen.choose("scale", scale)
     driver.app.display.window.size = size

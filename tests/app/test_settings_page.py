@@ -8,7 +8,7 @@ import pytest
 
 from sandbox.app.base.shortcuts import action_of, combination_of, shortcuts, use_keys, with_keys
 from sandbox.app.draw.colours import BACKGROUND, show_theme, shown_theme
-from sandbox.app.draw.detail import FULL, NO_EFFECTS
+from sandbox.app.draw.renderer import FULL, NO_EFFECTS
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
 from sandbox.app.settings.system_theme import theme_of

@@ -21,9 +21,8 @@ from PIL import Image, ImageSequence
 from sandbox.app.base import desktop
 from sandbox.app.film.film import film_of_view
 from sandbox.app.run.playback import Playback
-from sandbox.app.share.export import Excerpt, Export
+from sandbox.app.share.export import Excerpt, Export, MovieWriter
 from sandbox.app.share.gif import GifWriter
-from sandbox.app.share.movie import MovieWriter
 from sandbox.app.share.sharing import Sharing
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import SetCoefficients
@@ -153,7 +152,7 @@ def test_a_png_is_the_moment_of_the_knob(driver, folder):
     driver.press((slider.pixel_of(slider.end), slider.rect.centery - 3))
     driver.move((slider.pixel_of(0.1), slider.rect.centery - 3))
     driver.release((slider.pixel_of(0.1), slider.rect.centery - 3))
-    assert driver.app.sharing.wanted.end == pytest.approx(0.1, abs=0.02)
+    assert driver.app.sharing.choices.end == pytest.approx(0.1, abs=0.02)
     driver.choose("Save")
     finish(driver)
     assert files(folder) == ["small-2.png", "small.png"]
@@ -453,7 +452,7 @@ def test_a_page_plays_the_part_that_was_chosen_and_its_last_picture_is_left_for_
     data = data_of(text)
     assert (path.suffix, data["begin"], len(data["recording"]["hashes"])) == (".html", 6, 25)
     assert f"<title>{sharing.level_name}" in text
-    assert export.picture.get_size() == sharing.wanted.size
+    assert export.picture.get_size() == sharing.choices.size
     world = next(iter(filter(None, film.states(0.4, 0.4))))
     assert state_hash(world).startswith(data["recording"]["hashes"][-1])
 
@@ -480,11 +479,11 @@ def test_what_lies_further_back_can_be_had_and_the_liveliest_seconds(open_app):
     driver.frames(2)
     sharing = driver.app.sharing
     assert sharing.film.seconds == pytest.approx(14.0, abs=0.3)
-    assert sharing.wanted.end - sharing.wanted.start == pytest.approx(10.0)
-    assert sharing.wanted.start == pytest.approx(sharing.film.seconds - 10.0)
+    assert sharing.choices.end - sharing.choices.start == pytest.approx(10.0)
+    assert sharing.choices.start == pytest.approx(sharing.film.seconds - 10.0)
     sharing.choose_liveliest()
     driver.frames(40)
-    assert sharing.wanted.start < 0.5 and sharing.wanted.end == pytest.approx(sharing.wanted.start + 5.0)
+    assert sharing.choices.start < 0.5 and sharing.choices.end == pytest.approx(sharing.choices.start + 5.0)
     assert 0 < len(sharing.pictures) <= 75
 
 

@@ -10,12 +10,10 @@ import pytest
 
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound import waves
-from sandbox.app.sound.bank import MAKERS, Bank, Note
-from sandbox.app.sound.device import Device, may_have_sound
-from sandbox.app.sound.mixdown import Mixdown
 from sandbox.app.sound.sound_events import SoundEvents
-from sandbox.app.sound.sounds import Sounds
-from sandbox.app.sound.voices import SPARE, VOICES, Cue, Voices
+from sandbox.app.sound.sounds import Device, Sounds, may_have_sound
+from sandbox.app.sound.voices import SPARE, VOICES, Cue, Mixdown, Voices
+from sandbox.app.sound.waves import MAKERS, Bank, Note
 from sandbox.level.reading.files import load_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings, SetDrive
@@ -243,7 +241,7 @@ def test_without_a_device_all_is_silent_and_nothing_is_said(monkeypatch, open_ap
 
 
 def test_on_linux_no_device_is_looked_for_where_there_is_neither_a_card_nor_a_server(monkeypatch, tmp_path):
-    monkeypatch.setattr("sandbox.app.sound.device.CARD", tmp_path / "card")
+    monkeypatch.setattr("sandbox.app.sound.sounds.CARD", tmp_path / "card")
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     for name in ("SDL_AUDIODRIVER", "PULSE_SERVER"):

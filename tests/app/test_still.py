@@ -7,8 +7,7 @@ import pygame
 import pytest
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.detail import FRAMES, FULL, LATE, NO_EFFECTS, NO_SHADOWS, TRY_AFTER, Detail
-from sandbox.app.draw.renderer import Overlay, Renderer
+from sandbox.app.draw.renderer import FRAMES, FULL, LATE, NO_EFFECTS, NO_SHADOWS, TRY_AFTER, Detail, Overlay, Renderer
 from sandbox.app.run.playback import Playback, interpolated
 from sandbox.physics.jit import COMPILED
 from sandbox.session.session import Session

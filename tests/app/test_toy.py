@@ -6,14 +6,11 @@ from types import SimpleNamespace
 import pygame
 import pytest
 
-from sandbox.app.base.stillness import Stillness
+from sandbox.app.base.idle import Stillness
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.toy import toy_start
-from sandbox.app.toy.desk import KEPT, MOST_PLACES, Desk
-from sandbox.app.toy.frame_motion import FARTHEST, FASTEST, HARDEST, FrameMotion
-from sandbox.app.toy.rest import DROWSY, WATCHED
-from sandbox.app.toy.toy import Toy
-from sandbox.app.toy.toy_window import SIDE, ToyWindow
+from sandbox.app.toy.toy import DROWSY, FARTHEST, FASTEST, HARDEST, WATCHED, FrameMotion, Toy
+from sandbox.app.toy.toy_window import KEPT, MOST_PLACES, SIDE, Desk, ToyWindow
 from sandbox.cli import main
 from sandbox.editor.storage.preferences import preference, preferences_file, set_preference
 from sandbox.session.compare.comparison import verify

@@ -8,10 +8,10 @@ import pygame
 import pytest
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.draw.themes import THEMES
-from sandbox.app.draw.things.treads import APART, MOST_PASSING, body_treads, ground_treads, mark_treads
+from sandbox.app.draw.things.belt_marks import APART, MOST_PASSING, body_belts, ground_belts, mark_belts
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import take
@@ -52,7 +52,7 @@ def on_top(tread, vertex, seconds):
 
 def test_chevrons_on_top_of_the_ground_run_to_the_right_at_the_speed_of_the_belt():
     terrain = state_of(terrain=[GROUND]).terrain
-    (tread,) = ground_treads(terrain)
+    (tread,) = ground_belts(terrain)
     before, after = (on_top(tread, terrain.vertex, at) for at in (0.3, 0.31))
     moved = after[1:-1, None] - before[None]
     assert len(before) > 10 and np.abs(moved - 0.015).min(axis=1).max() < 1e-9
@@ -60,23 +60,23 @@ def test_chevrons_on_top_of_the_ground_run_to_the_right_at_the_speed_of_the_belt
 
 def test_a_line_has_chevrons_on_both_sides_that_run_apart():
     terrain = state_of(terrain=[{"id": "line", "polyline": [[-2, 0], [2, 0]], "belt": -1.0}]).terrain
-    assert [(tread.side, tread.speed, tread.closed) for tread in ground_treads(terrain)] == [
+    assert [(tread.side, tread.speed, tread.closed) for tread in ground_belts(terrain)] == [
         (1, -1.0, False), (-1, 1.0, False)
     ]  # fmt: skip
 
 
 def test_the_tread_of_a_jelly_is_one_way_round_all_of_its_outline():
     state = state_of(terrain=[{**GROUND, "belt": 0.0}], bodies=[JELLY])
-    (tread,) = body_treads(state)
+    (tread,) = body_belts(state)
     assert tread.closed and tread.side == 0 and tread.arc[-1] == pytest.approx(2.4)
     assert (tread.ends[1:, 0] == tread.ends[:-1, 1]).all()
     assert sorted(tread.springs.tolist()) == np.flatnonzero(state.belt).tolist()
-    assert ground_treads(state.terrain) == []
+    assert ground_belts(state.terrain) == []
 
 
 @pytest.mark.parametrize("speed", [0.01, 1.0, 30.0, 1000.0])
 def test_chevrons_are_never_so_near_that_they_seem_to_run_back(speed):
-    (tread,) = ground_treads(state_of(terrain=[{**GROUND, "belt": speed}]).terrain)
+    (tread,) = ground_belts(state_of(terrain=[{**GROUND, "belt": speed}]).terrain)
     found = places(tread, 12.34)
     apart = np.diff(found).min() if len(found) > 1 else tread.arc[-1]
     assert apart >= min(0.7 * max(APART / ZOOM, speed / MOST_PASSING), tread.arc[-1])
@@ -88,7 +88,7 @@ def test_of_a_belt_as_long_as_a_level_may_be_no_more_is_drawn_than_is_seen():
     state, layer = take(build_world(level)), MarkList()
     camera = Camera((5e5, 0.0), 2000.0, (0, 0, 640, 360))
     at, none = camera.project(state.terrain.vertex), np.zeros(0, dtype=np.bool_)
-    mark_treads(layer, ground_treads(state.terrain), at, none, camera, 1.0, 0.5, THEMES["dark"])
+    mark_belts(layer, ground_belts(state.terrain), at, none, camera, 1.0, 0.5, THEMES["dark"])
     drawn = layer.arrays()
     assert drawn is not None and 8 < len(drawn.ends) < 200
     assert np.abs(drawn.ends).max() < 1000.0
@@ -96,10 +96,10 @@ def test_of_a_belt_as_long_as_a_level_may_be_no_more_is_drawn_than_is_seen():
 
 def test_what_is_nowhere_or_has_no_length_has_no_tread():
     state = state_of(terrain=[GROUND])
-    (tread,) = ground_treads(state.terrain)
+    (tread,) = ground_belts(state.terrain)
     layer, camera, none = MarkList(), Camera((0.0, 0.0), ZOOM, (0, 0, 640, 360)), np.zeros(0, dtype=np.bool_)
     flat = replace(tread, arc=np.zeros_like(tread.arc))
-    mark_treads(layer, [tread, flat], np.full((4, 2), np.nan), none, camera, 1.0, 0.5, THEMES["dark"])
+    mark_belts(layer, [tread, flat], np.full((4, 2), np.nan), none, camera, 1.0, 0.5, THEMES["dark"])
     assert layer.arrays() is None
 
 

@@ -7,11 +7,11 @@ import pygame
 import pytest
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.picture import draw_picture
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.water import HIGHEST, Pools
 from sandbox.app.sound.sound_events import SoundEvents
 from sandbox.level.document.canonical import level_text

@@ -2,8 +2,7 @@
 
 import pytest
 
-from sandbox.app.base.display import Display
-from sandbox.app.window.window_place import KEPT, keep_window, kept_window
+from sandbox.app.base.display import KEPT, Display, keep_window, kept_window
 from sandbox.editor.storage.preferences import set_preference
 
 

@@ -15,8 +15,7 @@ import time
 
 import pygame
 
-from sandbox.app.base.display import Display
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base.display import Display, StartRequest
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.window.app import App
 from sandbox.editor.document import empty_level

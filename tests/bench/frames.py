@@ -15,8 +15,7 @@ os.environ["SDL_AUDIODRIVER"] = "dummy"
 import numpy as np
 import pygame
 
-from sandbox.app.base.display import Display
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base.display import Display, StartRequest
 from sandbox.app.window.app import App
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import read_level, shipped_levels

@@ -15,8 +15,7 @@ os.environ["SDL_VIDEODRIVER"] = "dummy"
 
 import pygame
 
-from sandbox.app.base.display import Display
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base.display import Display, StartRequest
 from sandbox.app.window.app import App
 from sandbox.level.reading.files import load_level
 from sandbox.session.commands import AddParticle

@@ -23,7 +23,7 @@ SECONDS = 4.0
 PROGRAM = """
 import sys, time
 began = float(sys.argv.pop(1))
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 plain = Profile.reached
 def reached(profile, what):
     if what not in profile.first_times:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from sandbox.app.draw.scene import made_looks
-from sandbox.app.share.stuffs import stuffs_for
+from sandbox.app.share.playing import materials_for
 from sandbox.page.page import KERNELS, WEB
 from sandbox.page.start import adding, start_of
 from sandbox.physics.world import World
@@ -52,7 +52,7 @@ def tried_in_node(
     """What comes of each record, after others and a tick, in a page of a world at its start: words, hash, whether a
     refused one has changed anything. are_slots: what is tried has slots, and goes to the kernel as it is."""
     start = start_of(world)
-    added = adding(world) | {"made": made_looks() | stuffs_for(world.settings.tick_rate)}
+    added = adding(world) | {"made": made_looks() | materials_for(world.settings.tick_rate)}
     given = {
         "about": start.about | {"adding": added},
         "before": list(map(literal, before)),

@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from sandbox.app.share.links import link_to
-from sandbox.app.share.runs_for_pages import all_at_once
+from sandbox.app.base.loop import at_once
+from sandbox.app.share.runs_for_pages import link_to
 from sandbox.level.document.model import Level
 from sandbox.page.page import KERNELS, WEB
 from sandbox.page.start import adding, start_of
@@ -106,7 +106,7 @@ def base_runs() -> list[dict[str, Any]]:
         assert not session.messages, session.messages
         script = script_of(session.history.timeline, world)
         replay = run_of("run", session.level, script, session.tick, state_hash(world))
-        found.append(unpacked(all_at_once(link_to(replay, "", 0))))
+        found.append(unpacked(at_once(link_to(replay, "", 0))))
     return found
 
 

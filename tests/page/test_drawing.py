@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from sandbox import load_level
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.draw.themes import THEMES
 from sandbox.session.session import Session
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page

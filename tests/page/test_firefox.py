@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from sandbox import Session, load_level
-from sandbox.app.share.links import link_to
-from sandbox.app.share.runs_for_pages import all_at_once
+from sandbox.app.base.loop import at_once
+from sandbox.app.share.runs_for_pages import link_to
 from sandbox.cli import main
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay
@@ -57,7 +57,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 def test_firefox_verifies_a_run_that_comes_by_a_link(firefox: Firefox, site: str) -> None:
     replay = read_replay(f"levels/{PUZZLE}.solution.replay.gz")
-    tab = firefox.tab().open(all_at_once(link_to(replay, site, 0)))
+    tab = firefox.tab().open(at_once(link_to(replay, site, 0)))
     assert tab.evaluate(VERDICT).startswith("Verified")
     assert tab.evaluate("page.toy.run.last") == replay.ticks
     assert tab.faults == []

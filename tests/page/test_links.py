@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from sandbox import Session, load_level
-from sandbox.app.share.links import link_to
-from sandbox.app.share.runs_for_pages import all_at_once
+from sandbox.app.base.loop import at_once
+from sandbox.app.share.runs_for_pages import link_to
 from sandbox.commands import (
     AddBody,
     AddParticle,
@@ -111,7 +111,7 @@ def test_a_run_goes_to_a_page_is_taken_over_and_comes_back(
     replay = played(tmp_path, level, seed=LEVELS.index(level) + 1)
     types = {line.record["type"] for line in replay.script}
     assert {"add_body", "grab", "move_grab"} <= types
-    link = all_at_once(link_to(replay, address, 0))
+    link = at_once(link_to(replay, address, 0))
     assert link.startswith(f"{address}levels/{level}.html#scene=")
     assert verify(replay_of(link)) is None
     tab = browser.tab().open(link)
@@ -180,7 +180,7 @@ def with_a_cart(tmp_path: Path) -> Replay:
 def test_a_cart_drives_on_a_page_and_goes_and_comes_with_time(
     browser: Browser, address: str, with_a_cart: Replay
 ) -> None:
-    tab = browser.tab().open(all_at_once(link_to(with_a_cart, address, 0)))
+    tab = browser.tab().open(at_once(link_to(with_a_cart, address, 0)))
     assert str(tab.evaluate(VERDICT)).startswith("Verified: 80 ticks, the very state")
     tab.evaluate("page.toy.pause(); page.toy.seek(80)")
     assert tab.evaluate("Object.keys(page.toy.drives.keys)") == ["q", "w"]
@@ -208,6 +208,6 @@ def test_a_link_with_a_kit_in_place_of_a_definition_comes_to_the_same_state(tmp_
         session.advance()
     session.stop_recording()
     replay = read_replay(tmp_path / "soft.replay.gz")
-    link = all_at_once(link_to(replay, "", 0))
+    link = at_once(link_to(replay, "", 0))
     (kit,) = (line.record for line in replay_of(link).script if line.record["type"] == "add_body")
     assert set(kit) == {"type", "kit"} and verify(replay_of(link)) is None

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sandbox import load_level
-from sandbox.app.share.stuffs import parts_for
+from sandbox.app.share.playing import parts_for
 from sandbox.editor.storage.part_files import catalogue
 from sandbox.replay import Replay, read_replay, verify
 from sandbox.session.replay.link import replay_of

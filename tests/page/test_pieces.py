@@ -11,9 +11,9 @@ import pytest
 
 from sandbox import load_level
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Renderer
-from sandbox.app.draw.themes import THEMES
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from sandbox.session.session import Session

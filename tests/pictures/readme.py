@@ -7,8 +7,8 @@ import pygame
 from PIL import Image
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.renderer import Overlay, Renderer
-from sandbox.app.draw.themes import THEMES
 from sandbox.app.film.film import name_tag
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.reading.files import read_level

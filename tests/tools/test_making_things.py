@@ -19,7 +19,7 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.scene import SceneTaker
 from sandbox.session.session import Session
 from sandbox.tools.axle import NOTHING_THERE, TOO_FEW, AxleTool
-from sandbox.tools.drawing import NO_ROOM, REFUSALS, STUFFS, StrokeTool
+from sandbox.tools.drawing import MATERIALS, NO_ROOM, REFUSALS, StrokeTool
 from sandbox.tools.pulling import MAKERS, SAME, TOO_SHORT, PullTool
 from tests.support.parts import room
 from tests.tools.test_playing_with_parts import gesture
@@ -52,14 +52,14 @@ def pulled(session, kind, *points):
     return tool, gesture(tool, session, *points)
 
 
-@pytest.mark.parametrize("stuff", STUFFS)
+@pytest.mark.parametrize("stuff", MATERIALS)
 def test_a_stroke_becomes_a_body_of_its_stuff_that_falls_and_keeps_its_form(stuff):
     session = Session(room())
     _, (command,) = drawn(session, stuff)
     assert command.body["type"] == "mesh" and 20 <= len(command.body["particles"]) <= 70
     assert all(round(value, 3) == value for place in command.body["particles"] for value in place)
     slots = slots_of(session.world, "+1")
-    mass = STUFFS[stuff].density * math.pi * 0.6 * 0.5
+    mass = MATERIALS[stuff].density * math.pi * 0.6 * 0.5
     assert session.world.mass[slots].sum() == pytest.approx(mass, rel=0.05)
     world = run(session, 300)
     size = np.ptp(world.position[slots], axis=0)

@@ -1,18 +1,38 @@
-"""Display: whether there is one, its window, and how large things have to be on it."""
+"""Display: the window, where it stood the last time, how large things are on it, and what it is opened for."""
 
 import math
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pygame
+
+from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.level.format.shipped import shipped_folder
+
+if TYPE_CHECKING:
+    from sandbox.level.document.model import Level
+    from sandbox.session.replay.recording import Replay
+
+
+@dataclass(frozen=True)
+class StartRequest:
+    """What the app is to show first: a level (source: its file), a replay, or a file to edit, "" = an empty sheet."""
+
+    level: "Level | None" = None
+    replay: "Replay | None" = None
+    source: Path | None = None
+    edit: str | None = None
+
 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 # Real pixels on Windows instead of a picture that the system stretches.
 os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 os.environ.setdefault("SDL_VIDEO_X11_WMCLASS", "spring-sandbox")
 
-import pygame
-
-from sandbox.level.format.shipped import shipped_folder
 
 # Window at scale 1, and the smallest that everything fits in.
 WINDOW_SIZE = (1280, 720)
@@ -141,6 +161,23 @@ class Display:
         """Close the window."""
         self.window.destroy()
         pygame.display.quit()
+
+
+# Under what it is remembered.
+KEPT = "window"
+
+
+def kept_window() -> list[int] | None:
+    """Left, top, width and height of the window of the last time [pixels]; None where nothing usable is remembered."""
+    kept = preference(KEPT)
+    is_place = isinstance(kept, list) and len(kept) == 4 and all(type(side) is int for side in kept)
+    return kept if is_place and abs(kept[0]) + abs(kept[1]) < 1 << 20 and min(kept[2:]) > 0 else None
+
+
+def keep_window(place: list[int] | None) -> None:
+    """Remember left, top, width and height of the window; None leaves what was remembered."""
+    if place is not None:
+        set_preference(KEPT, place)
 
 
 def _is_on_a_desktop(kept: Sequence[int]) -> bool:

@@ -1,17 +1,110 @@
-"""SagMap: what a body sags at every Cs and Cd of a pad, and where the words for that are written: window and page."""
+"""How far a body sags at every Cs and Cd: axes, maps and sentences, which the panel and the page share.
 
+An axis goes by Cs where that is small and by 1 - Cs where it is near 1: what is seen goes by Cs / (1 - Cd).
+"""
+
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.app.base.coefficient_scale import CoefficientScale, scale_for
+from sandbox.app.base.sentences import capitalised
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.physics.arrays import Floats
 from sandbox.physics.softness.body_motion import BodyMotion, word_edges
 from sandbox.physics.softness.firmness import WORDS
 from sandbox.physics.softness.sag_meter import SagMeter
+from sandbox.physics.softness.settling import Support
+
+# Sags (k,) of pairs of Cs and Cd (k,) each.
+SagOf = Callable[[Floats, Floats], Floats]
+# Values that have a number on an axis, where there is room.
+NUMBERED = (1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0)
+# Significant digits of a value, or of what it is below 1 by.
+DIGITS = 3
+# The last part of an axis is 1 itself.
+END = 0.997
+
+
+@dataclass(frozen=True)
+class CoefficientScale:
+    """An axis from `lowest` to 1; `rest`: what 1 - value fades out at, the less the wider the last tenth."""
+
+    lowest: float
+    rest: float
+
+    def _height(self, value: float | Floats) -> Floats:
+        return np.log10(np.asarray(value) / (1.0 - np.asarray(value) + self.rest))
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return float(self._height(self.lowest)), -math.log10(self.rest)
+
+    def place_of(self, value: float) -> float:
+        """Where on the axis (0..1) a value lies; values below it, 0 among them, lie at its start."""
+        if value <= self.lowest:
+            return 0.0
+        low, high = self._ends
+        return min((float(self._height(min(value, 1.0))) - low) / (high - low), 1.0)
+
+    def values(self, count: int) -> Floats:
+        """Values (count,) at equal distances, from the lowest to 1."""
+        power = 10.0 ** np.linspace(*self._ends, count)
+        return np.minimum(1.0, power * (1.0 + self.rest) / (1.0 + power))
+
+    def value_at(self, place: float) -> float:
+        """The value at a place on the axis, in three significant digits, of 1 - value where that is small."""
+        if place >= END:
+            return 1.0
+        low, high = self._ends
+        power = 10.0 ** (low + max(place, 0.0) * (high - low))
+        value = min(1.0, power * (1.0 + self.rest) / (1.0 + power))
+        if value < 0.9:
+            return float(f"{value:.{DIGITS}g}")
+        below = float(f"{1.0 - value:.{DIGITS - 1}g}")
+        return round(1.0 - below, 9)
+
+    def numbers(self) -> list[float]:
+        """The values with a number that lie on it."""
+        return [value for value in NUMBERED if value >= self.lowest * 0.999]
+
+
+# Where nothing is known of what is seen.
+PLAIN = CoefficientScale(0.003, 0.02)
+# Softest ends and widths of the last tenth that an axis may have.
+_LOWEST, _RESTS = (0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4), (0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
+# From 0.9 to 1 is this share of an axis at least: a thumb of a pad as wide as the panel.
+_THUMB = 0.13
+ALIVE = (0.005, 1.0)
+_SAMPLES = 40
+
+
+def scale_for(sag_of: SagOf, includes: tuple[float, ...]) -> CoefficientScale:
+    """The axis for Cs and Cd on which most pairs sag by what can be seen, and that has these values on it."""
+    best, most = PLAIN, -1.0
+    for lowest in _LOWEST:
+        if any(0.0 < value < lowest for value in includes):
+            continue
+        for rest in _RESTS:
+            scale = CoefficientScale(lowest, rest)
+            if 1.0 - scale.place_of(0.9) < _THUMB:
+                continue
+            alive = share_alive(scale, sag_of)
+            if alive > most + 0.01:
+                best, most = scale, alive
+    return best
+
+
+def share_alive(scale: CoefficientScale, sag_of: SagOf) -> float:
+    """The share of a pad of this axis both ways on which what is seen sags by a half to a hundred per cent."""
+    values = scale.values(_SAMPLES)
+    stiffness, damping = (axis.reshape(-1) for axis in np.meshgrid(values, values, indexing="ij"))
+    sag = sag_of(stiffness, damping)
+    return float(np.mean((sag > ALIVE[0]) & (sag < ALIVE[1])))
+
 
 # Values across and up, at equal distances on the axes.
 SIZE = 33
@@ -22,9 +115,9 @@ WORD_SHARE, WORD_DOWN, WORD_WIDTH = 0.015, 0.34, 0.16
 STEP = 0.02
 
 # Halvings of the range of frequencies in which a word is looked for.
-HALVINGS = 39
+_HALVINGS = 39
 # Digits, and decimals at most, of its Cs and Cd.
-DIGITS, DECIMALS = 4, 12
+_PAIR_DIGITS, _DECIMALS = 4, 12
 
 Pairs = dict[str, tuple[float, float]]
 
@@ -101,7 +194,7 @@ def word_pairs(meter: SagMeter, body: BodyMotion) -> Pairs:
 
     def of_sag(sag: float) -> tuple[float, float]:
         _, (stiffness, damping, _) = meter.firmness_at(
-            lambda pair: float(body.sag_of_tick(np.array(pair[:1]), np.array(pair[1:2]))[0]) > sag, HALVINGS
+            lambda pair: float(body.sag_of_tick(np.array(pair[:1]), np.array(pair[1:2]))[0]) > sag, _HALVINGS
         )
         return _coefficient(stiffness), _coefficient(damping)
 
@@ -111,5 +204,43 @@ def word_pairs(meter: SagMeter, body: BodyMotion) -> Pairs:
 def _coefficient(value: float) -> float:
     """In few digits, or with few digits of what it is below 1 by: that says how firm a stiff body is."""
     if value < 0.5:
-        return float(f"{value:.{DIGITS}g}")
-    return round(1.0 - float(f"{1.0 - value:.{DIGITS}g}"), DECIMALS)
+        return float(f"{value:.{_PAIR_DIGITS}g}")
+    return round(1.0 - float(f"{1.0 - value:.{_PAIR_DIGITS}g}"), _DECIMALS)
+
+
+SAG_TIP = "Part of its height by which a body sags where it stands, or of its length where it is held; 0 is rigid"
+# What one sees of a body under its weight: the part that moves, how, and of what that is a share.
+_SEEN = {
+    Support.FLOOR: ("", "sags by", "height"),
+    Support.ENDS: ("'s middle", "drops by", "length"),
+    Support.HANGING: ("", "stretches by", "height"),
+    Support.SPANNED: ("'s middle", "drops by", "length"),
+    Support.ARM: ("'s end", "drops by", "length"),
+    Support.HUB: ("'s rim", "drops by", "height"),
+}
+
+
+class SagSentence(NamedTuple):
+    """What is said of a body: `sag` has {} where the share stands, `flat` is said where that says nothing any more."""
+
+    sag: str
+    flat: str
+
+
+def subject_words(name: str, support: Support) -> str:
+    """What of a body sags, as it stands in a sentence: "the girder's end"."""
+    article = "" if name[-1:].isdigit() else "the "
+    return f"{article}{name}{_SEEN[support][0]}"
+
+
+def size_word(support: Support) -> str:
+    """Of what a sag is a share: "height"."""
+    return _SEEN[support][2]
+
+
+def sag_sentence(name: str, support: Support) -> SagSentence:
+    """How far a body sags that is held so."""
+    _, verb, of = _SEEN[support]
+    subject = capitalised(subject_words(name, support))
+    flat = "lies flat under its own weight" if support is Support.FLOOR else f"{verb} more than half its {of}"
+    return SagSentence(f"{subject} {verb} {{}} of its {of}", f"{subject} {flat}")

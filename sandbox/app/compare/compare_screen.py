@@ -8,13 +8,12 @@ from typing import ClassVar
 import numpy as np
 import pygame
 
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 from sandbox.app.compare.second_run import TwinPlayback, coefficients_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel, Pointer
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, Colour
-from sandbox.app.film.film import Film, last_ticks
-from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.film.film import Film, FilmPair, last_ticks
 from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.engineers_rows import SOLVER_LABELS
 from sandbox.app.panel.panel import Panel

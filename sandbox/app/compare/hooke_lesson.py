@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pygame
 
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 from sandbox.app.compare.compare_screen import CompareScreen, draw_card_of_words
 from sandbox.app.compare.hooke_level import CD, FIRST_CS, FIRST_K, MOST_DOUBLINGS, C, SpringTrial, lesson_level, words
 from sandbox.app.compare.second_run import TwinPlayback

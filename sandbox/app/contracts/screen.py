@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple, Protocol
 
 import pygame
 
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 from sandbox.app.base.shortcuts import Mode
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import Colour

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pygame
 
-from sandbox.app.draw.themes import CHEEK, INK, outline_of, rgb_of
+from sandbox.app.draw.colours import CHEEK, INK, outline_of, unpacked
 from sandbox.level.format.look import PALETTE
 from sandbox.level.format.shipped import shipped_folder
 
@@ -38,7 +38,7 @@ def app_icon(side: int) -> pygame.Surface:
 def _bled(picture: pygame.Surface) -> pygame.Surface:
     """The picture with the outline's colour under its transparent pixels, which scaling mixes in."""
     below = pygame.Surface(picture.get_size(), pygame.SRCALPHA)
-    below.fill((*rgb_of(outline_of(PALETTE["raspberry"])), 0))
+    below.fill((*unpacked(outline_of(PALETTE["raspberry"])), 0))
     below.blit(picture, (0, 0))
     return below
 
@@ -51,9 +51,9 @@ def _draw_spring(picture: pygame.Surface, k: int) -> None:
     for colour, wide in ((outline_of(STEEL), WIRE + 0.03), (STEEL, WIRE), (STEEL_LIGHT, 0.4 * WIRE)):
         radius = 0.5 * wide * k
         for line in (points.tolist(), foot):
-            pygame.draw.lines(picture, rgb_of(colour), False, line, round(2 * radius))
+            pygame.draw.lines(picture, unpacked(colour), False, line, round(2 * radius))
             for point in line:
-                pygame.draw.circle(picture, rgb_of(colour), point, radius)
+                pygame.draw.circle(picture, unpacked(colour), point, radius)
 
 
 def _draw_body(picture: pygame.Surface, k: int) -> None:
@@ -61,14 +61,14 @@ def _draw_body(picture: pygame.Surface, k: int) -> None:
     left, top, wide, high = (part * k for part in BODY)
     body, line = pygame.Rect(left, top, wide, high), round(0.022 * k)
     pygame.draw.rect(
-        picture, rgb_of(outline_of(colour)), body.inflate(2 * line, 2 * line), border_radius=int(CORNER * k)
+        picture, unpacked(outline_of(colour)), body.inflate(2 * line, 2 * line), border_radius=int(CORNER * k)
     )
     mask = pygame.Surface(body.size, pygame.SRCALPHA)
     pygame.draw.rect(mask, (255, 255, 255), mask.get_rect(), border_radius=int((CORNER - 0.02) * k))
     # Lit from above left: lighter there, darker below.
     y, x = np.mgrid[0 : body.height, 0 : body.width] / np.array([[[body.height]], [[body.width]]])
     light = 1.12 - 0.34 * (0.75 * y + 0.25 * x)
-    shaded = np.clip(light[..., None] * np.array(rgb_of(colour)), 0, 255).astype(np.uint8)
+    shaded = np.clip(light[..., None] * np.array(unpacked(colour)), 0, 255).astype(np.uint8)
     skin = pygame.Surface(body.size, pygame.SRCALPHA)
     pygame.surfarray.blit_array(skin, shaded.transpose(1, 0, 2))
     skin.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MIN)
@@ -81,17 +81,17 @@ def _draw_body(picture: pygame.Surface, k: int) -> None:
 def _draw_face(picture: pygame.Surface, k: int) -> None:
     for x in (0.355, 0.645):
         for colour, dx, dy, radius in (
-            (rgb_of(INK), 0.0, 0.0, 0.108), ((255, 255, 255), 0.0, 0.0, 0.096), (rgb_of(INK), 0.012, 0.018, 0.060),
+            (unpacked(INK), 0.0, 0.0, 0.108), ((255, 255, 255), 0.0, 0.0, 0.096), (unpacked(INK), 0.012, 0.018, 0.060),
             ((255, 255, 255), -0.008, -0.012, 0.022),
         ):  # fmt: skip
             pygame.draw.circle(picture, colour, ((x + dx) * k, (0.33 + dy) * k), radius * k)
         cheek = pygame.Surface((round(0.12 * k), round(0.07 * k)), pygame.SRCALPHA)
-        pygame.draw.ellipse(cheek, (*rgb_of(CHEEK), 150), cheek.get_rect())
+        pygame.draw.ellipse(cheek, (*unpacked(CHEEK), 150), cheek.get_rect())
         picture.blit(cheek, ((x + (-0.15 if x < 0.5 else 0.03)) * k, 0.435 * k))
     turns = np.linspace(0.18 * math.pi, 0.82 * math.pi, 40)
     for turn in turns.tolist():
         at = (0.5 + 0.115 * math.cos(turn)) * k, (0.435 + 0.105 * math.sin(turn)) * k
-        pygame.draw.circle(picture, rgb_of(INK), at, 0.019 * k)
+        pygame.draw.circle(picture, unpacked(INK), at, 0.019 * k)
 
 
 if __name__ == "__main__":

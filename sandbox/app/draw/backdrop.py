@@ -7,14 +7,13 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import Colour
+from sandbox.app.draw.colours import Theme, packed
 from sandbox.app.draw.looks import ground_look
 from sandbox.app.draw.raster.bodies import GRAIN, BodyRows, Flush, Outlines, Skins
 from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, MarkList, Painter
 from sandbox.app.draw.raster.shadows import Thrown
 from sandbox.app.draw.textures import EARTH, GROUND, TILE, TIMBER, Tiles, grains, ground_tones, skin_table
-from sandbox.app.draw.themes import Theme
-from sandbox.app.draw.things.borders import starts_of
+from sandbox.app.draw.things.level_slots import starts_of
 from sandbox.level.document.model import Level
 from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.terrain import Terrain
@@ -99,8 +98,8 @@ class Backdrop:
             if not is_solid:
                 ends = np.concatenate([corners, vertex[terrain.edge_b[edges]]], axis=1)
                 metal = theme.metal[0]
-                lines.strokes(ends, (EDGE_HALF + 0.9) * scale, _packed(theme.metal[1]))
-                lines.strips(ends, EDGE_HALF * scale, TILE["steel"], 0.0, _packed(metal), 0.7)
+                lines.strokes(ends, (EDGE_HALF + 0.9) * scale, packed(theme.metal[1]))
+                lines.strips(ends, EDGE_HALF * scale, TILE["steel"], 0.0, packed(metal), 0.7)
                 continue
             wide = np.ptp(corners[:, 0]) > WIDE * max(extent, camera.viewport[2])
             name = ids[chain] if chain < len(ids) else ""
@@ -118,7 +117,7 @@ class Backdrop:
             shapes = Outlines(np.concatenate(small), starts_of([len(corners) for corners in small]))
             nothing = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
             offset = (4.0 * scale, 8.0 * scale)
-            self._painter.shadows(nothing, shapes, offset, _packed(theme.shadow), 0.7 * theme.shadow_strength)
+            self._painter.shadows(nothing, shapes, offset, packed(theme.shadow), 0.7 * theme.shadow_strength)
         kinds = [kind for kind, _ in solids]
         points = Outlines(np.concatenate([c for _, c in solids]), starts_of([len(c) for _, c in solids]))
         count = len(solids)
@@ -164,17 +163,13 @@ def _lay_turf(marks: MarkList, corners: Floats, theme: Theme, scale: float) -> N
     ends = ends + TURF_SINK * scale * np.array([0.0, 1.0, 0.0, 1.0])
     period = (np.column_stack([metres - length + before, metres - beyond]) / (TURF_PERIOD * scale))[chosen]
     sod = tuple(round(0.45 * a + 0.55 * b) for a, b in zip(*theme.turf, strict=True))
-    marks.strokes(ends + scale * np.array([0.0, 1.0, 0.0, 1.0]), 3.2 * scale, _packed(sod))
+    marks.strokes(ends + scale * np.array([0.0, 1.0, 0.0, 1.0]), 3.2 * scale, packed(sod))
     marks.strips(ends, TURF_HALF * scale, TILE["turf"], period)
 
 
 def _line_of(kind: str, theme: Theme) -> int:
     red, green, blue = (int(0.65 * channel) for channel in ground_tones(kind, theme).line)
-    return red << 16 | green << 8 | blue
-
-
-def _packed(colour: Colour) -> int:
-    return colour[0] << 16 | colour[1] << 8 | colour[2]
+    return packed((red, green, blue))
 
 
 @functools.lru_cache(maxsize=1)

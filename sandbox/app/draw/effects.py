@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import packed
+from sandbox.app.draw.colours import SPARK, SPARK_GLOW, Theme, packed
 from sandbox.app.draw.raster.painter import MarkList
-from sandbox.app.draw.themes import SPARK, SPARK_GLOW, Theme
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.marks import NO_EDGE
 from sandbox.physics.snapshot import Snapshot
@@ -156,9 +155,8 @@ class Effects:
         rows = self._dust.rows
         if len(rows):
             left = 1.0 - rows[:, 4] / rows[:, 5]
-            red, green, blue = theme.dust
             size = np.clip(rows[:, 6] * camera.zoom * (1.6 + 1.8 * (1.0 - left)), 2.0, 48.0 * scale)
-            marks.discs(camera.project(rows[:, :2]), size, red << 16 | green << 8 | blue, 0.4 * left, glow=True)
+            marks.discs(camera.project(rows[:, :2]), size, packed(theme.dust), 0.4 * left, glow=True)
 
     def mark_drops(self, marks: MarkList, camera: Camera, theme: Theme, scale: float) -> None:
         """Draw drops, before everything."""

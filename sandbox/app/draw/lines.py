@@ -1,10 +1,11 @@
-"""Canvas: anti-aliased lines and discs on a surface, by kernels, or by pygame while they are not compiled."""
+"""Canvas: anti-aliased lines and discs by kernels, or by pygame while they are not compiled; and solid shapes."""
 
 import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG
+from sandbox.app.draw.colours import TERRAIN_FILL, Colour
+from sandbox.app.draw.raster.marks import ACROSS, ALONG
 from sandbox.app.draw.raster.painter import MarkList, Painter
 
 # Coordinates beyond this [pixels] are not drawn: float rounding would bend the line, and no screen is that large.
@@ -47,3 +48,13 @@ class Canvas:
         layer = MarkList()
         layer.discs(centres, radii, colours)
         self._draw(layer)
+
+
+# Width of an edge of terrain [pixels at scale 1].
+EDGE_WIDTH = 2.4
+
+
+def fill_solid(surface: pygame.Surface, corners: NDArray[np.float64], colour: Colour = TERRAIN_FILL) -> None:
+    """Fill a solid shape, by its corners [pixels] (n, 2)."""
+    # pygame turns coordinates into 32 bit integers.
+    pygame.draw.polygon(surface, colour, np.clip(corners, -FARTHEST, FARTHEST).tolist())

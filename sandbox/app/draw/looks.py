@@ -1,10 +1,24 @@
 """Looks: what each body, spring and ball of a level is made of for the eye: what the level says, else automatic."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any
 
-from sandbox.app.draw.themes import BRICK, CLOTH, GLASS, PAINTS, STONE, WOOD
-from sandbox.level.document.model import Level, NissenMaterial, ParticleDef, SpringDef
+from sandbox.app.draw.colours import (
+    BRICK,
+    CLOTH,
+    GLASS,
+    MATERIAL_COLOURS,
+    PAINTS,
+    RELAXED,
+    STONE,
+    WOOD,
+    Colour,
+    unpacked,
+)
+from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.look import BALLS, GROUNDS, LINES, PALETTE, SKINS, colour_of
 from sandbox.level.kinds.body_def import BodyDef
 
@@ -172,3 +186,14 @@ def ground_look(level: Level, name: str, wide: bool) -> str:
 def added_spring_look(stiffness: float) -> Look:
     """What a spring of that Cs is drawn as which a command added by itself: a coil where it gives way, else a bar."""
     return Look("", "steel" if stiffness >= FIRM else "coil", PAINTS["mesh"])
+
+
+def material_colours(materials: Mapping[str, Material]) -> dict[str, Colour]:
+    """Colours of the materials of a level, in its order, and of the one that needs no definition: those of their looks.
+
+    A material whose look has no colour gets one of a row that repeats.
+    """
+    own = (name for name in materials if name != DEFAULT_MATERIAL)
+    colours: dict[str, Colour] = {DEFAULT_MATERIAL: RELAXED, **dict(zip(own, cycle(MATERIAL_COLOURS), strict=False))}
+    looks = {name: each.look.colour for name, each in materials.items() if each.look is not None}
+    return colours | {name: unpacked(colour_of(colour)) for name, colour in looks.items() if colour is not None}

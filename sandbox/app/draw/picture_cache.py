@@ -8,11 +8,11 @@ import hashlib
 import os
 from collections.abc import Generator
 from pathlib import Path
-from typing import cast
 
 import platformdirs
 import pygame
 
+from sandbox.app.base.loop import at_once
 from sandbox.app.base.recent_pictures import RecentPictures
 from sandbox.app.draw.colours import THEME_NAMES, ThemeName
 from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
@@ -89,16 +89,6 @@ def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> 
     return draw_picture(level, snapshot, SIZE, crop_of(level, snapshot), LINE_SCALE, asked or theme)
 
 
-def draw_at_once(level: Level, theme: ThemeName = "dark") -> pygame.Surface:
-    """Draw a level as the gallery shows it."""
-    slices = draw_in_slices(level, theme)
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            return cast(pygame.Surface, end.value)
-
-
 def keep_picture(picture: pygame.Surface, path: Path) -> None:
     """Write a picture, whole or not at all. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -146,7 +136,7 @@ def draw_shipped_pictures() -> None:
     for path in unused:
         path.unlink()
     for path, (level, theme) in missing.items():
-        keep_picture(draw_at_once(read_level(level), theme), path)
+        keep_picture(at_once(draw_in_slices(read_level(level), theme)), path)
         print(path.name)
 
 

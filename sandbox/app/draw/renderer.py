@@ -1,36 +1,32 @@
-"""Renderer: draws the world between two snapshots; it reads and never writes."""
+"""Renderer: draws the world between two snapshots; it reads and never writes. What is still or late is drawn less."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 from sandbox.app.draw.backdrop import Backdrop, stage_picture
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, packed
-from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
+from sandbox.app.draw.colours import ACCENT, DANGER, THEMES, WARNING, Theme, packed, theme_now
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.lines import Canvas
+from sandbox.app.draw.overlays import DASHES, ZONES, Overlays, mark_zones, part_of, strain_place, strain_tones
 from sandbox.app.draw.raster.painter import MarkList, Painter
-from sandbox.app.draw.shade import Shade
-from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
-from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
-from sandbox.app.draw.themes import THEMES, Theme, theme_now
-from sandbox.app.draw.things.drawables import Drawables
-from sandbox.app.draw.things.frame import Frame, strain_of
-from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
-from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads, mark_treads
-from sandbox.app.draw.views.overlays import DASHES, ZONES, Overlays, part_of
-from sandbox.app.draw.views.zone_outlines import mark_zones
+from sandbox.app.draw.things.belt_marks import BeltSide, body_belts, ground_belts, mark_belts
+from sandbox.app.draw.things.drawables import Drawables, KeptDrawables, Shade
+from sandbox.app.draw.things.level_slots import (
+    Frame,
+    strain_of,
+)
 from sandbox.app.draw.water import Pools
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.applied_forces import Pull
 from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.terrain import Terrain
 
@@ -111,14 +107,10 @@ class Renderer:
         self._ground: Terrain | None = None
         self._grounds = 0
         # Belts of terrain, and of bodies as long as these speeds are theirs.
-        self._ground_treads: list[Tread] = []
-        self._body_treads: list[Tread] = []
+        self._ground_belts: list[BeltSide] = []
+        self._body_belts: list[BeltSide] = []
         self._belts: NDArray[np.float64] | None = None
-        self._level_slots: LevelSlots | None = None
-        self._own_slots: LevelSlots | None = None
-        self._joined: tuple[Joined, ...] = ()
-        self._drawables: Drawables | None = None
-        self._key: tuple[NDArray[np.bool_], ...] = ()
+        self._things: KeptDrawables | None = None
         self._tiles: tuple[str, Tiles] | None = None
 
     def follow_theme(self) -> None:
@@ -173,8 +165,9 @@ class Renderer:
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
             if self.level is not None:
-                self._level_slots = self._slots_now(self.level, current.equipment.joined)
-                self.effects.see(current, frame.seconds, self._level_slots.strikes, self._pools.boxes)
+                self._things = self._things or KeptDrawables(self.level)
+                strikes = self._things.slots_of(current.equipment.joined).strikes
+                self.effects.see(current, frame.seconds, strikes, self._pools.boxes)
             place = pygame.Rect(camera.viewport)
             self._follow(frame, current, camera, overlay)
             if self._still.show(surface, place):
@@ -185,11 +178,14 @@ class Renderer:
                         painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
                     )  # fmt: skip
                     at = camera.project(current.terrain.vertex)
-                    self._draw_treads(self._ground_treads, at, frame, camera, springs)
+                    self._draw_belts(self._ground_belts, at, frame, camera, springs)
             with profile.part("things"):
-                if self.level is not None:
-                    self._draw_things_of(self.level, frame, current, camera, overlay)
-                self._draw_treads(self._body_treads, pixels, frame, camera, springs)
+                if self.level is not None and self._things is not None:
+                    if overlay.earlier is not None:
+                        self._shade = self._shade or Shade(self.level)
+                        self._shade.draw(painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
+                    self._draw_things(self._things.of(current), frame, camera)
+                self._draw_belts(self._body_belts, pixels, frame, camera, springs)
             self._draw_water(frame, current, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
@@ -207,24 +203,16 @@ class Renderer:
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
         self._still.keep(surface, place)
 
-    def _draw_things_of(self, level: Level, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
-        """What is in a level, and before it the shade of an earlier run."""
-        if overlay.earlier is not None:
-            self._shade = self._shade or Shade(level)
-            self._shade.draw(self._painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
-        drawables = self._drawables_of(frame, current, shown_particles(current), shown_springs(current))
-        self._draw_things(drawables, frame, camera)
-
     def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Note what this picture is drawn from, so that one of the same need not be drawn again."""
         if current.terrain is not self._ground:
             self._ground, self._grounds = current.terrain, self._grounds + 1
-            self._ground_treads = ground_treads(current.terrain)
+            self._ground_belts = ground_belts(current.terrain)
         if current.belt is not self._belts:
-            self._belts, self._body_treads = current.belt, body_treads(current)
-        shown = self.overlays.shown
-        treads = self._ground_treads or self._body_treads
-        moves = not self.effects.is_still or bool(treads or self._pools.flow)
+            self._belts, self._body_belts = current.belt, body_belts(current)
+        shown, drawables = self.overlays.shown, None if self._things is None else self._things.drawables
+        belts = self._ground_belts or self._body_belts
+        moves = not self.effects.is_still or bool(belts or self._pools.flow)
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
@@ -235,7 +223,7 @@ class Renderer:
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
             self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
             current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
-            self._drawables.faces.blinks(frame.seconds).tobytes() if self._drawables is not None else b"",
+            b"" if drawables is None else drawables.faces.blinks(frame.seconds).tobytes(),
         )  # fmt: skip
         numbers = [(frame.at, UNSEEN), (frame.angle, UNSEEN_TURN)]
         self._still.follow(key, [*numbers, (frame.strain, UNSEEN_STRAIN)] if self.lattice else numbers)
@@ -258,12 +246,12 @@ class Renderer:
             painter.marks(dust, frame.tiles.array)
         drawables.draw(painter, frame, self.lattice)
 
-    def _draw_treads(
-        self, treads: list[Tread], at: NDArray[np.float64], frame: Frame, camera: Camera, springs: NDArray[np.bool_]
+    def _draw_belts(
+        self, belts: list[BeltSide], at: NDArray[np.float64], frame: Frame, camera: Camera, springs: NDArray[np.bool_]
     ) -> None:
-        if treads:
+        if belts:
             layer = MarkList()
-            mark_treads(layer, treads, at, springs, camera, self.scale, frame.seconds, self.theme)
+            mark_belts(layer, belts, at, springs, camera, self.scale, frame.seconds, self.theme)
             self._painter.marks(layer, frame.tiles.array)
 
     def _draw_water(self, frame: Frame, current: Snapshot, camera: Camera) -> None:
@@ -272,29 +260,6 @@ class Renderer:
         if self.detail < NO_EFFECTS and self.has_effects:
             self.effects.mark_drops(layer, camera, self.theme, self.scale)
         self._painter.marks(layer, frame.tiles.array)
-
-    def _slots_now(self, level: Level, joined: tuple[Joined, ...]) -> LevelSlots:
-        """The slots of the level and of what has joined it."""
-        if self._level_slots is None or self._joined is not joined:
-            # Bodies that were there go on as they are.
-            goes_on = self._level_slots is not None and joined[: len(self._joined)] == self._joined
-            self._own_slots = self._own_slots or level_slots_of(level)
-            present = self._level_slots if goes_on and self._level_slots is not None else self._own_slots
-            self._level_slots = joined_slots(present, joined[len(self._joined) if goes_on else 0 :])
-            self._joined, self._drawables = joined, None
-        return self._level_slots
-
-    def _drawables_of(
-        self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
-    ) -> Drawables:
-        held = frame.state.inverse_mass == 0.0
-        key = particles, springs, held
-        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
-        if self._drawables is None or not is_same:
-            assert self._level_slots is not None
-            whole = whole_triangles(state)
-            self._drawables, self._key = Drawables(self._level_slots, frame.state, particles, springs, whole), key
-        return self._drawables
 
     def _draw_lattice(
         self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
@@ -341,8 +306,8 @@ class Renderer:
             self.effects.mark_breaks(layer, camera, self.theme, self.scale)
         elif self.detail < NO_EFFECTS and self.has_effects:
             self.effects.mark_sparks(layer, camera, self.scale)
-        if self._drawables is not None:
-            self._drawables.balls.mark_pins(layer, frame)
+        if self._things is not None and self._things.drawables is not None:
+            self._things.drawables.balls.mark_pins(layer, frame)
         if current.grab_spring >= 0:
             hands = slice(current.grab_spring, current.grab_spring + 10)
             active = np.flatnonzero(current.spring_active[hands]) + current.grab_spring
@@ -386,3 +351,95 @@ class Renderer:
             [[x - far, y, x - near, y], [x + near, y, x + far, y], [x, y - far, x, y - near], [x, y + near, x, y + far]]
         )
         canvas.lines(ends, np.full(4, packed(ACCENT)), 2.0 * self.scale)
+
+
+Floats = NDArray[np.float64]
+
+# Movements below this [pixels] are not seen, nor turns [rad], nor strains that differ by less.
+UNSEEN, UNSEEN_TURN, UNSEEN_STRAIN = 0.08, 0.01, 1e-3
+
+
+class Still:
+    """Keeps a picture once two in a row were drawn from the same values."""
+
+    def __init__(self) -> None:
+        self._key: tuple[object, ...] = ()
+        self._numbers: list[tuple[Floats, float]] = []
+        self._picture: pygame.Surface | None = None
+        self._is_same = False
+
+    def follow(self, key: tuple[object, ...], numbers: Sequence[tuple[Floats, float]]) -> None:
+        """Take in what the next picture is drawn from.
+
+        key: what must be equal; numbers: arrays, each with how far its values may go from those of the picture.
+        """
+        self._is_same = (
+            key == self._key
+            and len(numbers) == len(self._numbers)
+            and all(_is_near(new, old, most) for (new, most), (old, _) in zip(numbers, self._numbers, strict=True))
+        )
+        if not self._is_same:
+            self._key, self._numbers, self._picture = key, [(values.copy(), most) for values, most in numbers], None
+
+    def show(self, surface: pygame.Surface, place: pygame.Rect) -> bool:
+        """Show the kept picture, if there is one; whether it did."""
+        if not self._is_same or self._picture is None:
+            return False
+        surface.blit(self._picture, place)
+        return True
+
+    def keep(self, surface: pygame.Surface, place: pygame.Rect) -> None:
+        """Keep the picture that was drawn, if it and the one before were drawn from the same values."""
+        if self._is_same:
+            self._picture = pygame.Surface(place.size, 0, surface)
+            self._picture.blit(surface, (0, 0), place)
+
+
+def _is_near(new: Floats, old: Floats, most: float) -> bool:
+    if len(new) != len(old):
+        return False
+    with np.errstate(invalid="ignore"):
+        return bool(((np.abs(new - old) <= most) | (new == old) | (np.isnan(new) & np.isnan(old))).all())
+
+
+# Frames that take longer than this [s] are late: 50 of them in a second.
+LATE = 0.020
+# Of this many frames in a row, this many must be late before less is drawn.
+FRAMES, MOST_LATE = 30, 15
+# After this many frames in time more is tried; where that is late at once, only after twice as many, up to the last.
+TRY_AFTER, TRY_AT_LAST = 240, 3840
+# What is left out, in this order.
+FULL, NO_SHADOWS, NO_EFFECTS = range(3)
+
+
+class Detail:
+    """The level of detail of a screen: FULL, then without shadows, then without dust and sparks as well."""
+
+    def __init__(self) -> None:
+        self.level = FULL
+        self._frames = self._late = self._in_time = 0
+        self._wait = TRY_AFTER
+        self._is_trial = False
+
+    def note(self, frame_time: float) -> None:
+        """Take into account that a frame came so long [s] after the one before."""
+        is_late = frame_time > LATE
+        self._frames += 1
+        self._late += is_late
+        self._in_time = 0 if is_late else self._in_time + 1
+        if self._frames >= FRAMES:
+            if self._late >= MOST_LATE:
+                self._draw_less()
+            elif self._is_trial and self.level == FULL:
+                self._wait, self._is_trial = TRY_AFTER, False
+            self._frames = self._late = 0
+        if self.level > FULL and self._in_time >= self._wait:
+            self.level -= 1
+            self._is_trial = True
+            self._frames = self._late = self._in_time = 0
+
+    def _draw_less(self) -> None:
+        if self._is_trial:
+            self._wait, self._is_trial = min(2 * self._wait, TRY_AT_LAST), False
+        self.level = min(self.level + 1, NO_EFFECTS)
+        self._in_time = 0

@@ -9,21 +9,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.backdrop import BEVEL, SOIL_DEPTH, WIDE
-from sandbox.app.draw.colours import mixed
+from sandbox.app.draw.colours import CLOTH_STRIPE, THEMES, WOOD, Theme, mixed, outline_of
 from sandbox.app.draw.looks import FIRM, SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.textures import BLACK, LIT_DOWN, LIT_UP, TILE, Tiles, ground_tones, laid, skin_look, woven
-from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, WOOD, Theme, outline_of
-from sandbox.app.draw.things.balls import added_balls
-from sandbox.app.draw.things.borders import hull_of
+from sandbox.app.draw.things.belt_marks import BeltSide, body_belts, ground_belts
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import LEAST_KEPT, LEAST_OWN, spot_of
-from sandbox.app.draw.things.level_slots import Actor, Ball, Join, LevelSlots, joined_slots, level_slots_of
-from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
-from sandbox.app.draw.things.soft import CRUMB, CUT_OF_SIDE, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
-from sandbox.app.draw.things.springs import CYLINDER
-from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads
-from sandbox.app.draw.things.wheels import DrawnWheel
+from sandbox.app.draw.things.level_slots import Actor, Ball, Join, LevelSlots, hull_of, joined_slots, level_slots_of
+from sandbox.app.draw.things.members import CYLINDER
+from sandbox.app.draw.things.soft import (
+    CLOTH_TEXELS,
+    CRUMB,
+    CUT_OF_SIDE,
+    FLAT,
+    FOLD,
+    FOLD_DEPTH,
+    ROUNDING,
+    USUAL_ROUNDING,
+    Shape,
+    shape_of,
+)
+from sandbox.app.draw.things.wheels import DrawnWheel, added_balls
 from sandbox.app.draw.water import DrawnPool, Pools
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
@@ -56,8 +63,8 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         "pieces": {"own": LEAST_OWN, "kept": LEAST_KEPT, "crumb": CRUMB, "flat": _lighting(FLAT)},
         "ground": ground,
         "treads": [
-            *_treads(ground_treads(snapshot.terrain), snapshot.terrain.vertex),
-            *_treads(body_treads(snapshot)),
+            *_belts(ground_belts(snapshot.terrain), snapshot.terrain.vertex),
+            *_belts(body_belts(snapshot)),
         ],
         "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
@@ -284,18 +291,18 @@ def _ground(level: Level, snapshot: Snapshot) -> list[dict[str, Any]]:
     return made
 
 
-def _treads(treads: list[Tread], vertex: NDArray[np.float64] | None = None) -> list[dict[str, Any]]:
+def _belts(belts: list[BeltSide], vertex: NDArray[np.float64] | None = None) -> list[dict[str, Any]]:
     """Belts: their ways by points [m] of terrain, or by slots of particles."""
     made = []
-    for tread in treads:
-        way = [*tread.ends[:, 0].tolist(), int(tread.ends[-1, 1])]
+    for belt in belts:
+        way = [*belt.ends[:, 0].tolist(), int(belt.ends[-1, 1])]
         places = {"slots": way} if vertex is None else {"points": vertex[way].round(DIGITS).tolist()}
         made.append(
             {
                 **places,
-                "springs": tread.springs.tolist(),
-                "arc": tread.arc.round(DIGITS).tolist(),
-                **{name: getattr(tread, name) for name in ("speed", "closed", "side", "radius")},
+                "springs": belt.springs.tolist(),
+                "arc": belt.arc.round(DIGITS).tolist(),
+                **{name: getattr(belt, name) for name in ("speed", "closed", "side", "radius")},
             }
         )
     return made

@@ -7,11 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.draw.colours import Colour, mixed
+from sandbox.app.draw.colours import BRASS, STEEL, Colour, Theme, mixed, unpacked
 from sandbox.app.draw.raster.bodies import GRAIN, INSIDE, LIT
-from sandbox.app.draw.raster.cells import SHEET
-from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG
-from sandbox.app.draw.themes import BRASS, STEEL, Theme, rgb_of
+from sandbox.app.draw.raster.marks import ACROSS, ALONG, SHEET
 
 Floats = NDArray[np.float64]
 Packed = NDArray[np.uint32]
@@ -98,9 +96,9 @@ def ground_tones(kind: str, theme: Theme) -> GroundTones:
         case "rock":
             return GroundTones(*theme.rock, 0.25, 0.35, 1.0, theme.rock[1])
         case "wood":
-            return GroundTones(rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.30, 0.40, 1.0, rgb_of(0x6E4A28))
+            return GroundTones(unpacked(0xC28E57), unpacked(0x9A6C40), 0.30, 0.40, 1.0, unpacked(0x6E4A28))
         case "glass":
-            return GroundTones(rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.30, 0.42, rgb_of(0x6FA8C8))
+            return GroundTones(unpacked(0xD4EEFA), unpacked(0x8CC4E6), 0.6, 0.30, 0.42, unpacked(0x6FA8C8))
         case "metal":
             near, deep = mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55)
             return GroundTones(near, deep, 0.45, 0.45, 1.0, theme.metal[1])
@@ -110,7 +108,7 @@ def ground_tones(kind: str, theme: Theme) -> GroundTones:
 @lru_cache(MOST_TABLES)
 def skin_table(skin: str, colour: int, theme: Theme) -> Packed:
     """The table of a skin, or of a kind of ground, in a colour 0xRRGGBB (ground has its own)."""
-    base = rgb_of(colour)
+    base = unpacked(colour)
     if skin.startswith(GROUND):
         tones = ground_tones(skin.removeprefix(GROUND), theme)
         return _deep_table(tones.near, tones.deep, tones.light, tones.dark, tones.alpha)
@@ -124,7 +122,7 @@ def skin_table(skin: str, colour: int, theme: Theme) -> Packed:
 def _profile(base: int, gleam: float, top: float = 0.5, bottom: float = 0.55) -> Floats:
     """A round bar across (ACROSS, 3): light above, dark below, a line at both sides."""
     across = (np.arange(ACROSS) + 0.5) / 8 - 1
-    own = np.array(rgb_of(base), dtype=np.float64)
+    own = np.array(unpacked(base), dtype=np.float64)
     lit, dark = np.clip(-across - 0.1, 0, 1)[:, None] * top, np.clip(across + 0.1, 0, 1)[:, None] * bottom
     colour = own + (255.0 - own) * lit * 0.6 - own * dark * 0.6
     colour += (255.0 - colour) * (gleam * np.exp(-(((across + 0.42) / 0.16) ** 2)))[:, None]
@@ -143,8 +141,8 @@ def _bar(base: int, gleam: float = 0.35, **light: float) -> Packed:
 def _twist(light: int, dark: int, slope: float, count: int) -> Packed:
     wave = 0.5 + 0.5 * np.cos(2 * np.pi * (_U * count + _V * slope))
     share = np.clip((wave - 0.22) * 2.2, 0, 1)[..., None]
-    low = np.array(rgb_of(dark), dtype=np.float64)
-    colour = low + (np.array(rgb_of(light)) - low) * share
+    low = np.array(unpacked(dark), dtype=np.float64)
+    colour = low + (np.array(unpacked(light)) - low) * share
     rounded = 1 - 0.62 * np.clip(_V + 0.25, 0, 1) ** 1.2 - 0.35 * np.clip((np.abs(_V) - 0.7) / 0.3, 0, 1)
     return _packed(colour * (rounded + 0.22 * np.exp(-(((_V + 0.4) / 0.25) ** 2)))[..., None], _FULL)
 
@@ -230,7 +228,7 @@ def _sheet(colour: Floats) -> NDArray[np.int64]:
 @lru_cache(MOST_SHEETS)
 def woven(colour: int, stripe: int) -> NDArray[np.int64]:
     """A woven sheet (SHEET, SHEET), stripes of a second colour."""
-    own = np.where((_X % SHEET < 20)[..., None], rgb_of(stripe), rgb_of(colour)).astype(np.float64)
+    own = np.where((_X % SHEET < 20)[..., None], unpacked(stripe), unpacked(colour)).astype(np.float64)
     over = np.where((_X // 2 + _Y // 2) % 2 == 0, 1.0, 0.93) * (1 - 0.05 * (_X % 2 == 0))
     return _sheet(own * over[..., None])
 
@@ -242,7 +240,7 @@ def laid(skin: str, colour: int) -> NDArray[np.int64]:
     rows = 4
     high = SHEET // rows
     course = _Y // high
-    own = np.array(rgb_of(colour), dtype=np.float64)
+    own = np.array(unpacked(colour), dtype=np.float64)
     shift = (_X - (course % 2) * SHEET // 2) % SHEET
     if skin == "wood":
         tone = rng.normal(1, 0.05, rows)[course]

@@ -8,10 +8,9 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box, Camera
-from sandbox.app.draw.colours import Colour, mixed, packed
+from sandbox.app.draw.colours import Colour, Theme, mixed, packed, unpacked
 from sandbox.app.draw.raster.painter import MarkList
-from sandbox.app.draw.themes import Theme, rgb_of
-from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import Frame
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.look import colour_of
 from sandbox.physics.geometry.segment import signed_area
@@ -63,7 +62,7 @@ class _Kept:
 
 def _pool_of(zone: ZoneDef) -> DrawnPool:
     assert zone.box is not None and zone.water is not None
-    colour = None if zone.look is None or zone.look.colour is None else rgb_of(colour_of(zone.look.colour))
+    colour = None if zone.look is None or zone.look.colour is None else unpacked(colour_of(zone.look.colour))
     return DrawnPool(zone.box, zone.water.flow, colour)
 
 

@@ -8,7 +8,7 @@ from typing import Literal
 from sandbox.app.base.shortcuts import shortcuts, tip_of
 from sandbox.app.contracts.application import Application, Editing
 from sandbox.app.draw.camera import Box
-from sandbox.app.draw.material_colours import material_colours
+from sandbox.app.draw.looks import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.part_keeping import ask_to_keep_part

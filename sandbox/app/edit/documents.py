@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from sandbox.app.base.recordings import plain_name, recordings_folder
+from sandbox.app.base.desktop import plain_name, recordings_folder
 from sandbox.app.contracts.application import Application
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.run.playback import Playback

@@ -8,7 +8,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import Mode
 from sandbox.app.contracts.application import Application

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pygame
 
-from sandbox.app.base.recordings import recordings_folder, saved_recordings
-from sandbox.app.base.shortcuts import hint
-from sandbox.app.base.slice_queue import SliceQueue
+from sandbox.app.base.desktop import recordings_folder, saved_recordings
+from sandbox.app.base.loop import SliceQueue
+from sandbox.app.base.shortcuts import hint, tip_of
 from sandbox.app.compare.hooke_level import lesson_picture, twice
 from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import TEXT, shown_theme
@@ -23,13 +24,12 @@ from sandbox.app.draw.picture_cache import (
     kept_picture,
     picture_key,
 )
-from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shadow
-from sandbox.app.gallery.header import Header
-from sandbox.app.gallery.preview import Preview
-from sandbox.app.gallery.replay_card import date_of, fill_replay
-from sandbox.app.gallery.scene_card import fill_scene
+from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, Preview, draw_shadow
+from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
-from sandbox.app.play.goals.score import told_time
+from sandbox.app.play.score import time_text
+from sandbox.app.widgets.button import Button
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
@@ -259,7 +259,7 @@ class Gallery:
             card.show_texts(level.name, ": ".join(about), level.tags)
         result = best_result(level) if level.rules and not card.is_small else None
         if result is not None:
-            card.show_won(result.stars, told_time(result.seconds))
+            card.show_won(result.stars, time_text(result.seconds))
         if picture is not None:
             return
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)
@@ -446,3 +446,79 @@ def _beside(cards: Sequence[Card], card: Card, dx: int, dy: int) -> Card | None:
     return min(
         ahead, key=lambda each: (abs(each.rect.top - card.rect.top), abs(each.rect.left - card.rect.left)), default=None
     )
+
+
+# Sizes in layout units.
+_MARGIN = 36.0
+_BUTTON = 32.0
+_GAP = 8.0
+PAGES_WIDTH, SEARCH_WIDTH = 260.0, 240.0
+# Narrower windows have two rows and no line of sections.
+ROOM_FOR_ONE_ROW = 980.0
+NEW_TIP = "A place of your own: ground, walls and parts to play with"
+PAGES = (("levels", "Levels"), ("mine", "My levels"), ("recordings", "Replays"))
+SEARCH = "Type to search"
+
+
+class Header:
+    """The widgets above the cards; height [layout units]; section: the page that is shown."""
+
+    def __init__(self, ui: Ui, app: Application, section: str, sheet: Any, query: str) -> None:
+        self._ui, self._sheet = ui, sheet
+        width = ui.units[0]
+        self._is_wide = width >= ROOM_FOR_ONE_ROW
+        self._sections: dict[str, Button] = {}
+        title = "Edit a level" if app.mode == "edit" else "Spring Sandbox"
+        ui.label(ui.rect(_MARGIN, 20, 230, 36), title, sheet, "display")
+        right = width - _MARGIN
+        right = self._buttons(app, right)
+        second = 72.0
+        if self._is_wide:
+            left = _MARGIN + 250
+            pages = ui.rect(left, 24, PAGES_WIDTH, _BUTTON)
+            left = max(right - _GAP - SEARCH_WIDTH, left + PAGES_WIDTH + 2 * _GAP)
+            search = ui.rect(left, 24, right - _GAP - left, _BUTTON)
+            self.height = second + (34 if section == "levels" else 4)
+        else:
+            pages = ui.rect(_MARGIN, second, PAGES_WIDTH, _BUTTON)
+            left = _MARGIN + PAGES_WIDTH + _GAP
+            search = ui.rect(left, second, width - _MARGIN - left, _BUTTON)
+            self.height = second + _BUTTON + 10
+        # Ctrl+L opens another page in each mode.
+        page, action = ("mine", "recent") if app.mode == "edit" else ("recordings", "recordings")
+        tips = {page: tip_of(action, app.mode)}
+        choices = [(name, text, tips.get(name, "")) for name, text in PAGES]
+        ui.choice(pages, choices, app.open_gallery, sheet).show(section)
+        self.search: Field = ui.field(search, query, lambda _: True, sheet, 80, hint=SEARCH)
+
+    def _buttons(self, app: Application, right: float) -> float:
+        """New, Open file and Settings, up to the right; where they begin."""
+        ui, sheet = self._ui, self._sheet
+        documents = app.documents
+        new = documents.new_place if app.mode == "edit" else documents.play_new
+        buttons = [(58.0, "New", new), (94.0, "Open file", app.files.ask_to_open)]
+        left = right - _BUTTON - sum(width + _GAP for width, _, _ in buttons)
+        x = left
+        for width, text, action in buttons:
+            tip = NEW_TIP if text == "New" else tip_of("open_file" if app.mode == "edit" else "open", app.mode)
+            ui.button(ui.rect(x, 24, width, _BUTTON), text, action, sheet, tip=tip)
+            x += width + _GAP
+        place = ui.rect(x, 24, _BUTTON, _BUTTON)
+        ui.button(place, "", lambda: app.act("settings"), sheet, icon="settings", tip=tip_of("settings", app.mode))
+        return left
+
+    def show_sections(self, titles: Sequence[str], go: Callable[[str], None]) -> None:
+        """Offer the sections, where there is room for them."""
+        if not self._is_wide or len(titles) < 2:
+            return
+        ui, x = self._ui, _MARGIN
+        for title in titles:
+            wide = ui.font(12).size(title)[0] / ui.scale + 22
+            place = ui.rect(x, 70, wide, 26)
+            self._sections[title] = ui.button(place, title, partial(go, title), self._sheet, style="chip")
+            x += wide + 4
+
+    def mark(self, title: str) -> None:
+        """Mark the section that is seen."""
+        for name, button in self._sections.items():
+            button.is_selected = name == title

@@ -2,28 +2,31 @@
 
 import csv
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pygame
+from numpy.typing import NDArray
 
-from sandbox.app.base.recordings import free_path, pictures_folder, plain_name, recordings_folder
+from sandbox.app.base.desktop import free_path, pictures_folder, plain_name, recordings_folder
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import LINE, SURFACE
 from sandbox.app.draw.picture import write_png
 from sandbox.app.graphs.chart import Chart, GraphLine
-from sandbox.app.graphs.measures import MEASURES, Moment
-from sandbox.app.graphs.tracks import Track
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.button import Choice
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.format.writing import write_file
+from sandbox.physics.analysis.applied_forces import motor_readings
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy, spring_lengths
+from sandbox.physics.world import World
 
 # The dock's share of the window's height, and the most of it; its bounds, and the row of buttons [layout units].
 SHARE, MOST_SHARE = 0.30, 0.40
@@ -250,3 +253,141 @@ class GraphDock:
             self._app.say(f"The file cannot be written: {error.strerror or error}.")
             return
         self._app.say(f"Saved as {path}")
+
+
+# Of more motors those with the first names are shown.
+MOST_MOTORS = 5
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What can be measured at the end of a frame: a world, the particles that were picked [slots], times [ms].
+
+    tick_time: of one tick; frame_time: of the whole frame before; None where no tick was made.
+    """
+
+    world: World
+    picked: Sequence[int] = ()
+    tick_time: float | None = None
+    frame_time: float | None = None
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A group of values of one unit: its title, a word of what to do while it is empty, and how they are read.
+
+    main: those that are shown of each of two runs; none: all. from_zero: whether the scale begins at 0.
+    """
+
+    title: str
+    unit: str
+    read: Callable[[Moment], dict[str, float]]
+    hint: str = ""
+    main: tuple[str, ...] = ()
+    from_zero: bool = False
+
+
+def _energies(moment: Moment) -> dict[str, float]:
+    world = moment.world
+    motion, springs, gravity = kinetic_energy(world), spring_energy(world), gravity_energy(world)
+    return {"total": motion + springs + gravity, "motion": motion, "springs": springs, "gravity": gravity}
+
+
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
+def _strains(moment: Moment) -> dict[str, float]:
+    world = moment.world
+    kept = world.spring_active & (world.rest_length > 0.0) & (world.material >= 0)
+    strain = 100.0 * (spring_lengths(world)[kept] / world.rest_length[kept] - 1.0)
+    if not len(strain):
+        return {}
+    return {"most stretched": float(strain.max()), "mean": float(strain.mean()), "most squeezed": float(strain.min())}
+
+
+def _named(moment: Moment) -> list[tuple[str, int]]:
+    """The picked particles that there still are."""
+    world = moment.world
+    slots = [slot for slot in moment.picked if slot < world.particle_count and world.particle_active[slot]]
+    return [(world.particle_names[slot], slot) for slot in slots]
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def _speeds(moment: Moment) -> dict[str, float]:
+    velocity = moment.world.velocity
+    return {name: float(np.hypot(*velocity[slot])) for name, slot in _named(moment)}
+
+
+def _places(moment: Moment) -> dict[str, float]:
+    position = moment.world.position
+    return {
+        f"{name} {axis}": float(position[slot, k]) for name, slot in _named(moment) for k, axis in ((1, "y"), (0, "x"))
+    }
+
+
+def _torques(moment: Moment) -> dict[str, float]:
+    readings = [reading for reading in motor_readings(moment.world) if reading.pushes]
+    return {reading.name: reading.torque for reading in readings[:MOST_MOTORS]}
+
+
+def _times(moment: Moment) -> dict[str, float]:
+    found = {"one tick": moment.tick_time, "whole frame": moment.frame_time}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+PICK = "Point at a particle and press O to follow it (four at most); press O again to stop."
+MEASURES: dict[str, Measure] = {
+    "energy": Measure("Energy", "J", _energies, "", ("total", "motion")),
+    "strain": Measure("Strain", "%", _strains, "There is no spring here.", ("most stretched",)),
+    "speed": Measure("Speed", "m/s", _speeds, PICK, from_zero=True),
+    "place": Measure("Place", "m", _places, PICK),
+    "torque": Measure("Torque", "N m", _torques, "This level has no motor that is running."),
+    "time": Measure("Step time", "ms", _times, "The run has not started yet.", from_zero=True),
+}  # fmt: skip
+
+
+# Samples that are kept at least: two minutes of frames. Twice as many fit, so that few of them are ever moved.
+KEPT = 7200
+# Values side by side; more names than this, those that came first are forgotten.
+MOST_NAMES = 12
+
+Floats = NDArray[np.float64]
+
+
+class Track:
+    """Values by name at ticks that rise; where a name has none it is NaN."""
+
+    def __init__(self, kept: int = KEPT) -> None:
+        self._kept, self._count = kept, 0
+        self._ticks = np.zeros(2 * kept, dtype=np.int64)
+        self._values: dict[str, Floats] = {}
+
+    @property
+    def last_tick(self) -> int:
+        """The last tick that there is a value of; -1: none."""
+        return int(self._ticks[self._count - 1]) if self._count else -1
+
+    def forget_from(self, tick: int) -> None:
+        """Forget a tick and what follows: the run was changed there."""
+        self._count = int(np.searchsorted(self._ticks[: self._count], tick))
+
+    def add(self, tick: int, values: Mapping[str, float]) -> None:
+        """Add what was measured at a tick after all others."""
+        if self._count == 2 * self._kept:
+            for array in (self._ticks, *self._values.values()):
+                array[: self._kept] = array[self._kept :]
+            self._count = self._kept
+        for name in values:
+            if name not in self._values:
+                self._values[name] = np.full(2 * self._kept, np.nan)
+        while len(self._values) > MOST_NAMES:
+            del self._values[next(iter(self._values))]
+        self._ticks[self._count] = tick
+        for name, array in self._values.items():
+            array[self._count] = values.get(name, np.nan)
+        self._count += 1
+
+    def between(self, first: float, last: float) -> tuple[NDArray[np.int64], dict[str, Floats]]:
+        """Ticks (k,) from first to last, and the values (k,) of each name that has some there."""
+        start, end = np.searchsorted(self._ticks[: self._count], (first, last + 1e-9))
+        part = slice(int(start), int(end))
+        values = {name: array[part] for name, array in self._values.items() if np.isfinite(array[part]).any()}
+        return self._ticks[part], values

@@ -7,8 +7,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
-from sandbox.app.base.sag_map import WORD_SHARE, SagMap
+from sandbox.app.base.sag_map import PLAIN, WORD_SHARE, CoefficientScale, SagMap
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer

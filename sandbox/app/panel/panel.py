@@ -6,9 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
-from sandbox.app.base.sag_map import own_of, scale_of
-from sandbox.app.base.sag_sentences import SAG_TIP
+from sandbox.app.base.sag_map import PLAIN, SAG_TIP, CoefficientScale, own_of, scale_of
 from sandbox.app.base.sentences import sentence
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState

@@ -5,7 +5,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from sandbox.app.base.sag_sentences import sag_sentence, size_word
+from sandbox.app.base.sag_map import sag_sentence, size_word
 from sandbox.physics.analysis.stability import CoefficientLimits
 from sandbox.physics.arrays import Floats
 from sandbox.physics.softness.body_motion import FLAT, SpringMotion

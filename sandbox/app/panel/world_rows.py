@@ -8,7 +8,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.app.draw.views.overlays import names_for
+from sandbox.app.draw.overlays import names_for
 from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.panel_rows import BESIDE, INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import with_unit

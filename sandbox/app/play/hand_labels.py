@@ -1,4 +1,4 @@
-"""Words beside the pointer: what hands pull with, and why a tool did nothing."""
+"""The hand: words beside the pointer, what it pulls with and why a tool did nothing; and its strength, remembered."""
 
 import math
 
@@ -9,8 +9,10 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import BACKGROUND, TEXT, WARNING, Colour
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.physics.analysis.applied_forces import Pull
 from sandbox.physics.snapshot import Snapshot
+from sandbox.tools.drag import STRENGTHS
 from sandbox.tools.tool import Tool
 
 # Sizes in layout units: of the text, and how far from the cursor it is.
@@ -66,3 +68,25 @@ def _write(surface: pygame.Surface, ui: Ui, place: tuple[float, float], lines: l
         for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
             surface.blit(font.render(line, True, BACKGROUND), (x + dx, y + dy))
         surface.blit(font.render(line, True, colour), (x, y))
+
+
+# Under what it is remembered.
+HAND = "hand"
+
+
+def kept_strength(otherwise: str) -> str:
+    """The strength that was chosen last, or another where none was."""
+    kept = preference(HAND)
+    return kept if isinstance(kept, str) and kept in STRENGTHS else otherwise
+
+
+def keep_strength(name: str) -> None:
+    """Remember a strength for later runs."""
+    set_preference(HAND, name)
+
+
+def next_strength(name: str) -> tuple[str, str]:
+    """The strength after one in their order, and a line about it."""
+    names = list(STRENGTHS)
+    name = names[(names.index(name) + 1) % len(names)]
+    return name, f"Hand: {name}, at most {STRENGTHS[name] / 10.0:g} times the weight of what it holds."

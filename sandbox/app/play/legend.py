@@ -6,11 +6,20 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.app.draw.colours import Colour, packed
+from sandbox.app.draw.colours import Colour, Theme, packed
 from sandbox.app.draw.lines import Canvas
-from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_tones
-from sandbox.app.draw.themes import Theme
-from sandbox.app.draw.views.overlays import ARROW, BAR, DOT, POINT, ZONES, Overlays, stability_tones
+from sandbox.app.draw.overlays import (
+    ARROW,
+    BAR,
+    DOT,
+    FULL_STRAIN,
+    POINT,
+    SLIGHT_STRAIN,
+    ZONES,
+    Overlays,
+    stability_tones,
+    strain_tones,
+)
 from sandbox.app.play.hand_labels import newtons
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.app.widgets.texts import line_height, wrapped

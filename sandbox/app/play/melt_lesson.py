@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import Profile
 from sandbox.app.contracts.screen import Pixel
-from sandbox.app.play.melting import MELTED, WHOLE, is_melted
 from sandbox.app.play.play_screen import PlayScreen
+from sandbox.app.play.run_actions import MELTED, WHOLE, is_melted
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.widgets.ui import Ui
 

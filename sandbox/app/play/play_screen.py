@@ -7,39 +7,31 @@ from typing import ClassVar
 
 import pygame
 
-from sandbox.app.base.loop import SPEEDS
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import SPEEDS, Profile
 from sandbox.app.base.shortcuts import Mode, tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import Colour
-from sandbox.app.draw.detail import FULL, NO_EFFECTS
-from sandbox.app.draw.views.overlays import names_for
-from sandbox.app.film.film import Film, last_ticks
-from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.draw.overlays import names_for
+from sandbox.app.draw.renderer import FULL, NO_EFFECTS
+from sandbox.app.film.film import Film, FilmPair, last_ticks
 from sandbox.app.graphs.graph_dock import GraphDock
 from sandbox.app.panel.contacts import ContactSettings, ask_for_pace, restart_with_contacts
 from sandbox.app.panel.panel import MORE, SECTIONS, Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH, ROOM_FOR_PANEL, SidePanel
 from sandbox.app.parts.part_page import PartPage
-from sandbox.app.play.bake_choice import ask_to_keep
-from sandbox.app.play.drive_keys import DriveKeys
-from sandbox.app.play.earlier_runs import EarlierRuns
-from sandbox.app.play.goals.game import Game
-from sandbox.app.play.hand_labels import draw_hint, draw_labels
-from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_strength
-from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
+from sandbox.app.play.drive_keys import KEYS_HEIGHT, ROOM_BESIDE, DriveKeys, draw_key_caps
+from sandbox.app.play.game import Game
+from sandbox.app.play.hand_labels import draw_hint, draw_labels, keep_strength, kept_strength, next_strength
 from sandbox.app.play.legend import Legend
-from sandbox.app.play.melting import toggle_melt
-from sandbox.app.play.palette import NAMES, PartsPalette, refused_tools
-from sandbox.app.play.speeds import state_of
+from sandbox.app.play.problems import Problems
+from sandbox.app.play.run_actions import EarlierRuns, ask_to_keep, toggle_melt
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, run_parts
 from sandbox.app.play.thing_menu import cursor_actions, open_thing_menu
 from sandbox.app.play.time_bar import TimeBar
-from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
-from sandbox.app.play.troubles import Troubles
+from sandbox.app.play.toolbar import BAR_HEIGHT, NAMES, BarState, PartsPalette, Toolbar, refused_tools, state_of
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -49,7 +41,7 @@ from sandbox.tools.play_tools import PLAY_TOOLS
 from sandbox.tools.tool import PlayTool
 
 # Where buttons are for what went wrong, below the bar [layout units].
-REMEDIES_PLACE = (16.0, 12.0)
+FIXES_PLACE = (16.0, 12.0)
 # The button that begins again, in the middle [layout units].
 AGAIN_SIZE = (150.0, 40.0)
 # Graphs and timeline have that much room beside a panel, or are as wide as the window [layout units].
@@ -102,7 +94,7 @@ class PlayScreen:
                 self.shape.open[name] = is_open
         self.stage.drag.strength = kept_strength(self.stage.drag.strength)
         self._keys = DriveKeys(playback)
-        self.troubles = Troubles(app, lambda: self.stage, self.say)
+        self.problems = Problems(app, lambda: self.stage, self.say)
         self._legend = Legend()
         can_end = self.is_game and bool(playback.level.rules or playback.level.goal)
         self.game = Game(app, self, lambda: self.stage, can_end)
@@ -197,9 +189,9 @@ class PlayScreen:
         if self.show_palette:
             wide, tall = (side / ui.scale for side in self.area[2:])
             self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall, refused)
-        left, below = REMEDIES_PLACE
+        left, below = FIXES_PLACE
         left = left if self.palette is None else self.palette.right + below
-        self.troubles.build(ui, left, BAR_HEIGHT + below)
+        self.problems.build(ui, left, BAR_HEIGHT + below)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
         place = ui.rect(left, BAR_HEIGHT + self.again_top + self.game.height, *AGAIN_SIZE)
         self.restart_button = ui.button(place, "Again", self._reset, style="primary", tip=tip_of("reset", "play"))
@@ -278,7 +270,7 @@ class PlayScreen:
             "melt": self.toggle_melt,
             "follow": lambda: self.say(stage.follow_with_camera(next(reversed(self.graphs.picked), None))),
             "touching": lambda: self.set_contacts(ContactSettings.of(self.playback.level).other),
-            **self.troubles.actions,
+            **self.problems.actions,
             **self.game.actions,
             "undo": lambda: self.earlier.undo(self.playback),
             "redo": lambda: self.earlier.redo(self.playback),
@@ -421,8 +413,8 @@ class PlayScreen:
         self._follow_run()
 
     def _follow_run(self) -> None:
-        """Let troubles, replay bar, kept runs and panel be about the run that is shown now."""
-        self.troubles.begin()
+        """Let problems, replay bar, kept runs and panel be about the run that is shown now."""
+        self.problems.begin()
         self.game.begin()
         self._app.show_replay_progress(self.playback, self.can_cancel)
         self._app.scenes.begin(self.playback, self.source)
@@ -499,7 +491,7 @@ class PlayScreen:
         self._measure(self.playback.session.tick - before, profile)
         self._tell()
         self.game.update(frame_time, pointer)
-        self.troubles.update()
+        self.problems.update()
         if self.game.has_ghost != self._has_ghost:
             self._app.rebuild()
         self._show_again()
@@ -548,7 +540,7 @@ class PlayScreen:
         self.playback.messages.clear()
 
     def _show_again(self) -> None:
-        self.restart_button.visible = self.troubles.out_of_view.is_over
+        self.restart_button.visible = self.problems.out_of_view.is_over
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""
@@ -557,7 +549,7 @@ class PlayScreen:
         self.stage.renderer.has_effects = chosen["motion"] == "full"
         self.stage.draw(surface, profile)
         surface.set_clip(self.viewport)
-        self.troubles.draw(surface)
+        self.problems.draw(surface)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport, self._keys.is_on_pad)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
         draw_hint(surface, self._ui, self.camera, self.stage.tool)

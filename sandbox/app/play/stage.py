@@ -7,24 +7,24 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.base.profile import Profile
-from sandbox.app.base.stillness import Stillness
+from sandbox.app.base.idle import Stillness
+from sandbox.app.base.loop import Profile
 from sandbox.app.draw.camera import Box, Camera, bounds
-from sandbox.app.draw.detail import Detail
-from sandbox.app.draw.part_pictures import PartGhost, box_of
-from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.renderer import Overlay, Renderer
+from sandbox.app.draw.picture import PartGhost, particles_of, view_of
+from sandbox.app.draw.renderer import Detail, Overlay, Renderer
 from sandbox.app.film.film import Film
-from sandbox.app.play.following import Following, driven_particle
+from sandbox.app.run.followers import StabilityPaint
 from sandbox.app.run.playback import Playback
-from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.applied_forces import Pull, pulls_of
 from sandbox.physics.analysis.query import nearest_particle, shown_particles
+from sandbox.physics.arrays import Slots
+from sandbox.physics.components import body_of
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.world import World
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
 from sandbox.tools.drag import DRAG, DragTool
@@ -90,7 +90,7 @@ class Stage:
             self.tools[CATALOGUE] = self._catalogue_tool(self.part)
 
     def _catalogue_tool(self, part: Level) -> CatalogueTool:
-        left, bottom, right, top = box_of(Session(part).snapshot())
+        left, bottom, right, top = particles_of(Session(part).snapshot())
         size = right - left, top - bottom
 
         def make(place: tuple[float, float], velocity: tuple[float, float], times: float) -> tuple[Command, ...]:
@@ -355,7 +355,7 @@ class Stage:
             # A hand at the edge of the picture would else drag the picture along, and itself.
             self.following.update(self.camera, self.playback.session.world, self.playback.current, frame_time)
         self._go_along()
-        self.playback.liveliness.note(self.playback.current)
+        self.playback.activity.note(self.playback.current)
         self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         at = None if pointer is None else self.camera.to_world(pointer)
         self.tool.hover(at if self.cursor is None else self.cursor)
@@ -383,3 +383,53 @@ class Stage:
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)
         self.renderer.draw(surface, self.camera, playback.previous, playback.current, alpha, overlay, profile)
         surface.set_clip(None)
+
+
+# The camera makes up all but a third of what it is behind in so long [s].
+LAG = 0.25
+
+
+def driven_particle(world: World) -> int | None:
+    """A particle of the first thing that a motor, a hydraulic or a muscle drives; None: nothing is driven."""
+    actuators = world.actuators
+    if len(actuators.motors.hub):
+        return int(actuators.motors.hub[0])
+    for springs in (actuators.hydraulics.spring, actuators.muscles.spring):
+        if len(springs):
+            return int(world.particle_a[springs[0]])
+    return None
+
+
+class Following:
+    """What a camera goes along with: the body of a particle (None: nothing)."""
+
+    def __init__(self) -> None:
+        self.particle: int | None = None
+        self._body: Slots | None = None
+        self._of: object = None
+
+    def begin(self, particle: int | None) -> None:
+        """Go along with the body of a particle from now on; None: with nothing."""
+        self.particle, self._of = particle, None
+
+    def update(self, camera: Camera, world: World, shown: Snapshot, frame_time: float) -> None:
+        """Move a camera on by a frame; what is gone or nowhere is not followed."""
+        if self.particle is None:
+            return
+        if self.particle >= len(shown.position) or not shown.particle_active[self.particle]:
+            self.begin(None)
+            return
+        key = (world, world.topology_version)
+        if key != self._of:
+            self._of, self._body = key, body_of(world, self.particle)
+        assert self._body is not None
+        body = self._body[self._body < len(shown.position)]
+        free = body[shown.inverse_mass[body] > 0.0]
+        places = shown.position[free if len(free) else body]
+        middle = places[np.isfinite(places).all(axis=1)]
+        if not len(middle):
+            return
+        x, y = middle.mean(axis=0).tolist()
+        share = 1.0 - math.exp(-frame_time / LAG)
+        across, up = camera.centre
+        camera.centre = across + share * (x - across), up + share * (y - up)

@@ -1,10 +1,12 @@
-"""StatusLine: what is on the screen in figures, and notices that come and go."""
+"""StatusLine: what is on the screen in figures, notices that come and go, and a bar while a run is played again."""
 
+import time
 from collections import deque
 from dataclasses import dataclass
 
 import pygame
 
+from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Figures, NoticesPlace, Pixel
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.readings import number
@@ -14,6 +16,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.applied_forces import MotorReading, motor_readings
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
+from sandbox.session.transaction import Interrupted
 
 # Sizes in layout units.
 STATUS_HEIGHT = 30.0
@@ -162,44 +165,43 @@ class StatusLine:
         return self._texts[key]
 
 
-def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float, height: float = 96) -> pygame.Rect:
-    card = pygame.Rect(0, 0, ui.px(380), ui.px(height))
-    card.center = (surface.get_width() // 2, surface.get_height() // 2)
-    pygame.draw.rect(surface, NOTICE, card, border_radius=ui.px(12))
-    pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
-    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(inset), card.top + ui.px(24)))
-    return card
+def run_parts(playback: Playback, state: str, non_finite: int, figures: Figures | None) -> list[tuple[str, Colour]]:
+    """Parts of the status line about a run: its state in a word, its recording, what goes wrong.
+
+    non_finite: how many particles are nowhere. figures: those of the loop, told with tick, motors and counts; None =
+    none of that is.
+    """
+    parts: list[tuple[str, Colour]] = [(state, ACCENT if not playback.clock.paused else WARNING)]
+    if playback.session.recording is not None:
+        parts.append((f"recording {playback.session.recording.name}", DANGER))
+    if playback.replay is not None:
+        parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
+    world, current = playback.session.world, playback.current
+    readings = motor_readings(world)
+    if readings and not SOLVERS[world.settings.solver].joints_bear_load:
+        parts.append((NO_LOADS, WARNING))
+    parts += warnings(non_finite, playback.behind)
+    if figures is None:
+        return parts
+    counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
+    parts.append((f"tick {playback.session.tick:,}", MUTED))
+    return [*parts, *motor_parts(readings), *counted_parts(*counts), *rate_parts(figures)]
 
 
-def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str, height: float = 96) -> pygame.Rect:
-    """A card in the middle of the window with a bar that is filled to a share (0..1); where the card is."""
-    card = _card(surface, ui, text, 28, height)
-    bar = pygame.Rect(card.left + ui.px(28), card.top + ui.px(58), card.width - ui.px(56), ui.px(6))
-    pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
-    bar.width = round(bar.width * min(max(share, 0.0), 1.0))
-    pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
-    return card
-
-
-def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer: Pixel) -> pygame.Rect:
-    """A bar that a button cancels; where that is. pointer: where the mouse is [pixels]."""
-    card = draw_bar(surface, ui, share, text, 142)
-    middle = card.bottom - ui.px(40)
-    hint = ui.font(12).render("Escape cancels.", True, MUTED)
-    surface.blit(hint, hint.get_rect(midleft=(card.left + ui.px(28), middle)))
-    button = pygame.Rect(0, 0, ui.px(96), ui.px(32))
-    button.midright = (card.right - ui.px(28), middle)
-    pygame.draw.rect(surface, mixed(NOTICE, TEXT, 0.18 if button.collidepoint(pointer) else 0.07), button, 0, ui.px(6))
-    pygame.draw.rect(surface, LINE, button, 1, ui.px(6))
-    word = ui.font(13).render("Cancel", True, TEXT)
-    surface.blit(word, word.get_rect(center=button.center))
-    return button
-
-
-def counted_parts(particles: int, springs: int) -> list[tuple[str, Colour]]:
-    """Parts of the status line with the counts of particles and springs."""
-    counts = {"particle": particles, "spring": springs}
-    return [(f"{count:,} {thing}{'' if count == 1 else 's'}", MUTED) for thing, count in counts.items()]
+def motor_parts(readings: list[MotorReading]) -> list[tuple[str, Colour]]:
+    """Parts of the status line with the torque that motors give."""
+    if len(readings) > NAMED_MOTORS:
+        full = sum(reading.at_limit for reading in readings)
+        told = f"{full} at their limit" if full else "none at its limit"
+        return [(f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
+    parts: list[tuple[str, Colour]] = []
+    for reading in readings:
+        if reading.pushes:
+            text = f"motor {reading.name}: {number(abs(reading.torque))} of {number(reading.limit)} N m"
+            parts.append((text, WARNING if reading.at_limit else MUTED))
+        else:
+            parts.append((f"motor {reading.name}: it turns freely", WARNING))
+    return parts
 
 
 def warnings(non_finite: int, behind: bool) -> list[tuple[str, Colour]]:
@@ -222,40 +224,106 @@ def rate_parts(figures: Figures) -> list[tuple[str, Colour]]:
     ]
 
 
-def motor_parts(readings: list[MotorReading]) -> list[tuple[str, Colour]]:
-    """Parts of the status line with the torque that motors give."""
-    if len(readings) > NAMED_MOTORS:
-        full = sum(reading.at_limit for reading in readings)
-        told = f"{full} at their limit" if full else "none at its limit"
-        return [(f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
-    parts: list[tuple[str, Colour]] = []
-    for reading in readings:
-        if reading.pushes:
-            text = f"motor {reading.name}: {number(abs(reading.torque))} of {number(reading.limit)} N m"
-            parts.append((text, WARNING if reading.at_limit else MUTED))
+def counted_parts(particles: int, springs: int) -> list[tuple[str, Colour]]:
+    """Parts of the status line with the counts of particles and springs."""
+    counts = {"particle": particles, "spring": springs}
+    return [(f"{count:,} {thing}{'' if count == 1 else 's'}", MUTED) for thing, count in counts.items()]
+
+
+# What takes no longer than this [s] shows nothing; then the bar is drawn this often [s].
+_PATIENCE = 0.3
+_DRAWN_EVERY = 0.05
+# A pause between two reports longer than this [s] is the beginning of something new.
+_NEW_AFTER = 1.0
+# What is begun while the bar is seen is meant for what it hides, and not for a dialog that comes after it.
+_BEGUN = (pygame.KEYDOWN, pygame.TEXTINPUT, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
+_ENDING = (pygame.QUIT, pygame.WINDOWCLOSE)
+_PLAYING_AGAIN = "Playing the run again"
+
+
+class RunProgress:
+    """Called with ticks done and ticks in all while a session steps again."""
+
+    def __init__(self, app: Application) -> None:
+        self._app = app
+        self._started = self._last = self._drawn = 0.0
+        self._done = 0
+        self._is_seen = False
+        # Where the button is that cancels it [pixels].
+        self._button = pygame.Rect(0, 0, 0, 0)
+
+    def show(self, done: int, total: int, can_cancel: bool) -> None:
+        """Draw the bar, where it has taken long enough to wonder. Raises Interrupted where the person cancels it."""
+        now = time.perf_counter()
+        if done < self._done or now - self._last > _NEW_AFTER:
+            self._started = now
+        self._last, self._done = now, done
+        if now - self._started < _PATIENCE or now - self._drawn < _DRAWN_EVERY:
+            return
+        pygame.event.pump()
+        if can_cancel and self._is_cancelled():
+            self._last = 0.0
+            raise Interrupted
+        self._drawn, self._is_seen = now, True
+        display, share = self._app.display, done / max(total, 1)
+        if can_cancel:
+            self._button = draw_work(
+                display.surface, self._app.ui, share, _PLAYING_AGAIN, self._pixel(pygame.mouse.get_pos())
+            )
         else:
-            parts.append((f"motor {reading.name}: it turns freely", WARNING))
-    return parts
+            draw_bar(display.surface, self._app.ui, share, _PLAYING_AGAIN)
+        display.flip()
+
+    def _is_cancelled(self) -> bool:
+        """Whether Escape or the button was pressed since the bar is seen, or the window is to be closed."""
+        begun = pygame.event.get(_BEGUN) if self._is_seen else []
+        return any(self._cancels(event) for event in begun) or pygame.event.peek(_ENDING)
+
+    def _cancels(self, event: pygame.event.Event) -> bool:
+        if event.type == pygame.KEYDOWN:
+            return bool(event.key == pygame.K_ESCAPE)
+        return event.type == pygame.MOUSEBUTTONDOWN and self._button.collidepoint(self._pixel(event.pos))
+
+    def _pixel(self, position: tuple[int, int]) -> tuple[float, float]:
+        ratio = self._app.display.pixel_ratio
+        return position[0] * ratio[0], position[1] * ratio[1]
+
+    def end(self) -> None:
+        """As a frame ends: forget what was pressed in it, where the bar was seen."""
+        if self._is_seen:
+            self._is_seen = False
+            pygame.event.clear(_BEGUN)
 
 
-def run_parts(playback: Playback, state: str, non_finite: int, figures: Figures | None) -> list[tuple[str, Colour]]:
-    """Parts of the status line about a run: its state in a word, its recording, what goes wrong.
+def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer: Pixel) -> pygame.Rect:
+    """A bar that a button cancels; where that is. pointer: where the mouse is [pixels]."""
+    card = draw_bar(surface, ui, share, text, 142)
+    middle = card.bottom - ui.px(40)
+    hint = ui.font(12).render("Escape cancels.", True, MUTED)
+    surface.blit(hint, hint.get_rect(midleft=(card.left + ui.px(28), middle)))
+    button = pygame.Rect(0, 0, ui.px(96), ui.px(32))
+    button.midright = (card.right - ui.px(28), middle)
+    pygame.draw.rect(surface, mixed(NOTICE, TEXT, 0.18 if button.collidepoint(pointer) else 0.07), button, 0, ui.px(6))
+    pygame.draw.rect(surface, LINE, button, 1, ui.px(6))
+    word = ui.font(13).render("Cancel", True, TEXT)
+    surface.blit(word, word.get_rect(center=button.center))
+    return button
 
-    non_finite: how many particles are nowhere. figures: those of the loop, told with tick, motors and counts; None =
-    none of that is.
-    """
-    parts: list[tuple[str, Colour]] = [(state, ACCENT if not playback.clock.paused else WARNING)]
-    if playback.session.recording is not None:
-        parts.append((f"recording {playback.session.recording.name}", DANGER))
-    if playback.replay is not None:
-        parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
-    world, current = playback.session.world, playback.current
-    readings = motor_readings(world)
-    if readings and not SOLVERS[world.settings.solver].joints_bear_load:
-        parts.append((NO_LOADS, WARNING))
-    parts += warnings(non_finite, playback.behind)
-    if figures is None:
-        return parts
-    counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
-    parts.append((f"tick {playback.session.tick:,}", MUTED))
-    return [*parts, *motor_parts(readings), *counted_parts(*counts), *rate_parts(figures)]
+
+def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str, height: float = 96) -> pygame.Rect:
+    """A card in the middle of the window with a bar that is filled to a share (0..1); where the card is."""
+    card = _card(surface, ui, text, 28, height)
+    bar = pygame.Rect(card.left + ui.px(28), card.top + ui.px(58), card.width - ui.px(56), ui.px(6))
+    pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
+    bar.width = round(bar.width * min(max(share, 0.0), 1.0))
+    pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
+    return card
+
+
+def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float, height: float = 96) -> pygame.Rect:
+    card = pygame.Rect(0, 0, ui.px(380), ui.px(height))
+    card.center = (surface.get_width() // 2, surface.get_height() // 2)
+    pygame.draw.rect(surface, NOTICE, card, border_radius=ui.px(12))
+    pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
+    surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(inset), card.top + ui.px(24)))
+    return card

@@ -1,5 +1,6 @@
-"""Toolbar: the bar at the top with tools, time and files; what has no room there is in a menu."""
+"""Toolbar: the bar at the top with tools, time and files; and the palette, the strip of parts at the left."""
 
+import functools
 from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
 from functools import partial
@@ -7,10 +8,14 @@ from typing import Any
 
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, Colour
-from sandbox.app.play.speeds import words_of
+from sandbox.app.draw.picture import picture_of
+from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.widgets.button import BarTitle
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.ui import Ui
+from sandbox.level.document.model import Level
+from sandbox.tools.dropping import PARTS
+from sandbox.tools.play_tools import PLAY_TOOLS
 
 # Sizes in layout units.
 BAR_HEIGHT = 52.0
@@ -207,3 +212,97 @@ class Toolbar:
             tip=tip or tip_of(action, "play"),
             style="" if action == "share" and words else "quiet",
         )
+
+
+def words_of(speed: float) -> str:
+    """A speed for a button: 1/2x, 4x, -1x."""
+    return f"{speed:g}x" if abs(speed) >= 1.0 else f"1/{round(1 / speed)}x"
+
+
+def state_of(speed: float) -> str:
+    """A speed in words, for the status line."""
+    if speed < 0.0:
+        return "backwards" if speed == -1.0 else f"backwards {-speed:g}x"
+    if speed == 1.0:
+        return "playing"
+    return f"fast {speed:g}x" if speed > 1.0 else f"slow motion 1/{round(1 / speed)}"
+
+
+# Sizes in layout units.
+_LEFT_EDGE, _TOP_EDGE, PALETTE_BUTTON, _PALETTE_GAP, _EDGE = 10.0, 10.0, 34.0, 3.0, 5.0
+_WIDTH = PALETTE_BUTTON + 2 * _EDGE
+_PICTURE = 30.0
+# Where the window has less height for a button, there are two columns.
+_LEAST_STEP = PALETTE_BUTTON + _PALETTE_GAP
+
+
+NAMES = tuple(name for name, tool in PLAY_TOOLS.items() if tool.group == "Parts")
+# The button of the catalogue goes by the name of the tool that has a part of it in hand.
+_MORE = "more"
+
+
+def _action_of(name: str) -> str:
+    return "catalogue" if name == CATALOGUE else f"tool_{name}"
+
+
+def refused_tools(level: Level) -> set[str]:
+    """The names of tools that hands may not use in a level, that of the catalogue too."""
+    if level.hands is None:
+        return set()
+    allows = level.hands.allows
+    refused = {name for name, tool in PLAY_TOOLS.items() if not allows(tool.deed)}
+    return refused if allows("add") else refused | {CATALOGUE}
+
+
+class PartsPalette:
+    """Buttons that take up what they show; `press` starts an action by its name.
+
+    refused: names of tools that are greyed, as the level keeps them away. left_out: names that have no room in a world
+    of that width and height [layout units]; they are in a menu.
+    """
+
+    def __init__(
+        self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float, refused: Set[str]
+    ) -> None:
+        self._ui, self._press = ui, press
+        names = [*NAMES, CATALOGUE]
+        rows, most = (
+            max(1, int((room - 2 * _TOP_EDGE - 2 * _EDGE + _PALETTE_GAP) // _LEAST_STEP)) for room in (height, width)
+        )
+        shown = names if len(names) <= rows * most else [*names[: max(rows * most - 1, 0)], _MORE]
+        self.left_out = [name for name in names if name not in shown]
+        count = len(shown)
+        columns = -(-count // min(rows, count))
+        rows = -(-count // columns)
+        width, tall = (
+            columns * (PALETTE_BUTTON + _PALETTE_GAP) - _PALETTE_GAP + 2 * _EDGE,
+            rows * _LEAST_STEP - _PALETTE_GAP + 2 * _EDGE,
+        )
+        # Its right edge [layout units].
+        self.right = _LEFT_EDGE + width
+        self.back = ui.panel(ui.rect(_LEFT_EDGE, top + _TOP_EDGE, width, tall), style="card")
+        self.buttons: dict[str, Any] = {}
+        for number, name in enumerate(shown):
+            column, row = divmod(number, rows)
+            place = ui.rect(
+                _EDGE + column * (PALETTE_BUTTON + _PALETTE_GAP),
+                _EDGE + row * _LEAST_STEP,
+                PALETTE_BUTTON,
+                PALETTE_BUTTON,
+            )
+            tip = "More buttons" if name == _MORE else tip_of(_action_of(name), "play")
+            do = self._show_menu if name == _MORE else functools.partial(press, _action_of(name))
+            icon = picture_of(name, ui.px(_PICTURE)) if name in PARTS else name
+            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="quiet", icon=icon)
+            self.buttons[name].is_enabled = name not in refused
+
+    def _show_menu(self) -> None:
+        """Offer what has no room on the strip."""
+        actions = [_action_of(name) for name in self.left_out]
+        choices = [(tip_of(action, "play"), functools.partial(self._press, action)) for action in actions]
+        choose(self._ui, "More", "", choices)
+
+    def show(self, tool: str) -> None:
+        """Show the tool in use."""
+        for name, button in self.buttons.items():
+            button.is_selected = name == tool or (name == _MORE and tool in self.left_out)

@@ -10,10 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from sandbox.app.base.loop import TickClock
-from sandbox.app.run.breaks import Breaks
-from sandbox.app.run.fired import Fired
-from sandbox.app.run.liveliness import Liveliness
-from sandbox.app.run.stopped import Stopped
+from sandbox.app.run.followers import Activity, Breaks, Fired, Stopped
 from sandbox.app.run.travel import Travel
 from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
@@ -90,7 +87,7 @@ class Playback:
         self.fired = Fired(level)
         # Whether it pauses where it is won or lost.
         self.pauses_at_end = False
-        self.liveliness = Liveliness()
+        self.activity = Activity()
         self.behind = False
         self.verdict = ""
         self.messages: list[str] = []

@@ -2,18 +2,25 @@
 
 import contextlib
 import os
+import re
+import subprocess
 import tempfile
-from collections.abc import Callable, Generator
+import wave
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pygame
 
+from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.picture import write_png
-from sandbox.app.film.film import Film, picture_count
-from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.film.film import Film, FilmPair, picture_count
 from sandbox.app.film.kinds import Size
+from sandbox.app.sound.sound_events import SoundEvents
+from sandbox.app.sound.sounds import cue_of
+from sandbox.app.sound.voices import Mixdown, Voices
+from sandbox.app.sound.waves import RATE, Bank
 from sandbox.level.format.writing import write_file
 from sandbox.session.commands import CommandError
 
@@ -81,8 +88,7 @@ class Export:
             writer.close()
 
     def _write_movie(self, path: Path) -> Slices:
-        from sandbox.app.share.movie import MovieWriter
-        from sandbox.app.share.soundtrack import write_soundtrack
+        from sandbox.app.share.export import MovieWriter, write_soundtrack
 
         excerpt = self.excerpt
         with tempfile.TemporaryDirectory() as folder:
@@ -152,3 +158,101 @@ class Export:
                 self.picture = picture
                 done += 1
             yield done / self._count
+
+
+# Constant quality of x264, 0 (best) to 51, and how long it may think.
+QUALITY, PRESET = "20", "veryfast"
+# Windows would open a console; an interrupt of the terminal is for the program that asked for the film alone.
+_NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)
+
+
+class MovieWriter:
+    """Writes pictures of a size, whose sides are even, into a file, fps of them a second. Raises OSError.
+
+    sound: a WAV file that is heard with them; None: there is none.
+    """
+
+    def __init__(self, path: Path, size: tuple[int, int], fps: float, sound: Path | None = None) -> None:
+        import imageio_ffmpeg
+
+        self._path = path
+        self._told = tempfile.TemporaryFile()  # noqa: SIM115
+        taken = ["-f", "rawvideo", "-pix_fmt", "bgra", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
+        heard = ["-an"] if sound is None else ["-c:a", "aac", "-b:a", "160k"]
+        taken += [] if sound is None else ["-i", str(sound)]
+        made = [*heard, "-c:v", "libx264", "-preset", PRESET, "-crf", QUALITY, "-pix_fmt", "yuv420p"]
+        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *taken, *made]
+        self._ffmpeg = subprocess.Popen(
+            [*command, "-movflags", "+faststart", "-f", "mp4", str(path)], stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL, stderr=self._told, start_new_session=True, creationflags=_NO_WINDOW,
+        )  # fmt: skip
+
+    def add(self, surface: pygame.Surface) -> None:
+        """Write the next picture."""
+        assert self._ffmpeg.stdin is not None
+        try:
+            self._ffmpeg.stdin.write(surface.get_buffer().raw)
+        except OSError:
+            self._ffmpeg.wait()
+            raise self._refusal() from None
+
+    def is_closed(self) -> bool:
+        """Have the file ended; whether it is whole."""
+        assert self._ffmpeg.stdin is not None
+        if not self._ffmpeg.stdin.closed:
+            try:
+                self._ffmpeg.stdin.close()
+            except OSError:
+                self._ffmpeg.wait()
+        if self._ffmpeg.poll() is None:
+            return False
+        if self._ffmpeg.returncode != 0:
+            raise self._refusal()
+        self._told.close()
+        return True
+
+    def give_up(self) -> None:
+        """Write no more."""
+        self._ffmpeg.kill()
+        self._ffmpeg.wait()
+        self._told.close()
+
+    def _refusal(self) -> OSError:
+        """What ffmpeg says, in a line: the first thing that it complains of."""
+        self._told.seek(0)
+        lines = self._told.read().decode(errors="replace").splitlines()
+        # Before the words stands which of its parts says them.
+        said = [text for line in lines if (text := re.sub(r"^\[[^]]*\] ", "", line).strip())]
+        # And before what the system refuses stands what ffmpeg was about.
+        reason = said[0].rpartition(": ")[2] if said else "ffmpeg has stopped"
+        return OSError(0, reason, str(self._path))
+
+
+# What is never louder than this share of full scale is silence.
+SILENCE = 1e-3
+# Of this shape a picture is, as to where on it a sound is heard.
+_SIZE = (1280, 720)
+
+
+def write_soundtrack(film: Film, start: float, end: float, path: Path) -> Iterator[None]:
+    """Write what is heard from start to end [s] of a film, a tick at a time; where nothing is, there is no file."""
+    camera = Camera(viewport=(0, 0, *_SIZE))
+    camera.fit(film.box)
+    events, bank, mixdown = SoundEvents(), Bank(), Mixdown()
+    voices = Voices(mixdown, bank)
+    for world in film.states(start, end):
+        if world is not None:
+            events.hear(world)
+            heard, events.heard = events.heard, []
+            voices.play([cue_of(each, camera) for each in heard], mixdown.now)
+            voices.hum([cue_of(each, camera) for each in events.motors(world)], mixdown.now)
+            mixdown.advance(1.0 / film.rate)
+        yield
+    mixed = mixdown.mixed
+    if not len(mixed) or float(np.abs(mixed).max()) < SILENCE:
+        return
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(2)
+        file.setsampwidth(2)
+        file.setframerate(RATE)
+        file.writeframes((np.clip(mixed, -1.0, 1.0) * 32767.0).astype("<i2").tobytes())

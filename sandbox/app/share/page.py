@@ -1,20 +1,28 @@
-"""SharePage: what of the last seconds is kept, and as what; how far it is; what has become of it."""
+"""SharePage: what of the last seconds is kept, and as what; how far it is; or a link to the run, on the clipboard."""
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Generator
 from typing import Any
 
 import pygame
 
+from sandbox.app.base.desktop import copy_text
 from sandbox.app.contracts.application import Application
-from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
-from sandbox.app.film.film import Film
-from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT, Colour
+from sandbox.app.film.film import Film, FilmPair
+from sandbox.app.share.runs_for_pages import link_to
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
-from sandbox.app.widgets.dialogs import MARGIN, Dialog
+from sandbox.app.widgets.dialogs import MARGIN, Dialog, ask
 from sandbox.app.widgets.slider import RangeSlider
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
+from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.physics.snapshot import state_hash
+from sandbox.session.commands.records import script_of
+from sandbox.session.link.scene_link import run_of
+from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.session import Session
 
 # Sizes in layout units.
 WIDTH, HEIGHT = 740.0, 424.0
@@ -100,7 +108,7 @@ class ShareForm:
     def update(self) -> None:
         """Show what has changed."""
         sharing = self._sharing
-        seen = (sharing.wanted, sharing.note)
+        seen = (sharing.choices, sharing.note)
         if seen != self._seen:
             self._seen = seen
             self._refresh()
@@ -143,7 +151,7 @@ class ShareForm:
             button.is_enabled = bool(sharing.level_name)
         row = self._row("File name", TOP - 4 + 3 * step)
         row.width -= ui.px(44)
-        self.field = ui.field(row, sharing.wanted.name, self._type_name, self._box, 120)
+        self.field = ui.field(row, sharing.choices.name, self._type_name, self._box, 120)
         self.field.enter = self._save_as
         self.suffix = ui.label(pygame.Rect(row.right + ui.px(6), row.top, ui.px(40), row.height), "", self._box)
         if film.seconds >= SHORTEST_FILM:
@@ -177,8 +185,8 @@ class ShareForm:
 
     def _build_work(self) -> None:
         ui, sharing = self._ui, self._sharing
-        kind = sharing.wanted.kind
-        name = f"Writing {sharing.wanted.name}.{kind}"
+        kind = sharing.choices.kind
+        name = f"Writing {sharing.choices.name}.{kind}"
         ui.label(ui.rect(self._right, TOP - 4, self._side, 26), name, self._box)
         self.bar = ProgressBar(ui, ui.rect(self._right, TOP + 30, self._side, 10), self._box)
         self._build_note(TOP + 54)
@@ -235,24 +243,24 @@ class ShareForm:
         self._sharing.save()
 
     def _refresh(self) -> None:
-        sharing, wanted = self._sharing, self._sharing.wanted
+        sharing, choices = self._sharing, self._sharing.choices
         self.note.show_text(sharing.note)
         if self.step != "choose":
             return
-        self.kinds.show(wanted.kind)
-        self.sizes.show(f"{wanted.size[0]}x{wanted.size[1]}")
+        self.kinds.show(choices.kind)
+        self.sizes.show(f"{choices.size[0]}x{choices.size[1]}")
         for button in self.sizes.buttons.values():
-            button.is_enabled = wanted.kind != "html"
-        self.named.show("yes" if wanted.named and self._sharing.level_name else "no")
-        self.field.show(wanted.name)
-        self.suffix.show_text(f".{wanted.kind}")
+            button.is_enabled = choices.kind != "html"
+        self.named.show("yes" if choices.named and self._sharing.level_name else "no")
+        self.field.show(choices.name)
+        self.suffix.show_text(f".{choices.kind}")
         film = sharing.film
         if self.slider is not None and film is not None:
-            is_still = wanted.kind == "png"
-            self.slider.show_range(wanted.start, wanted.end, is_still)
-            ago = film.seconds - wanted.end
+            is_still = choices.kind == "png"
+            self.slider.show_range(choices.start, choices.end, is_still)
+            ago = film.seconds - choices.end
             when = "the last moment" if ago < 0.05 else f"{ago:.1f} s before the last moment"
-            text = f"The picture: {when}" if is_still else f"{wanted.end - wanted.start:.1f} s, to {when}"
+            text = f"The picture: {when}" if is_still else f"{choices.end - choices.start:.1f} s, to {when}"
             self.caption.show_text(text)
 
 
@@ -311,3 +319,73 @@ class ProgressBar(Widget):
         filled = pygame.Rect(0, 0, max(size[1], round(size[0] * min(self.share, 1.0))), size[1])
         pygame.draw.rect(surface, ACCENT, filled, border_radius=round_by)
         return surface
+
+
+# Under what the address of a site is remembered.
+_SITE = "link_site"
+# Wall time [s] of a frame.
+_BUDGET = 0.02
+_LINK_HINT = (
+    "The address of the site where the page of this level lies (sandbox site writes one). Empty: the run alone, "
+    "for sandbox open."
+)
+
+
+class LinkCopying:
+    """One link at a time; `update` goes on with it a slice a frame."""
+
+    def __init__(self, app: Application) -> None:
+        self._app = app
+        self._slices: Generator[float, None, str] | None = None
+        self._done = 0.0
+
+    def ask(self) -> None:
+        """Ask for the site, and begin."""
+        if self._app.play is None:
+            self._app.say("There is nothing to share yet: play a level first.")
+            return
+        site = preference(_SITE)
+        known = site if isinstance(site, str) else ""
+        ask(self._app.ui, "Copy a link to this run", _LINK_HINT, known, "Copy link", self._begin)
+
+    def status(self) -> list[tuple[str, Colour]]:
+        """What the status line says of the work."""
+        return [] if self._slices is None else [(f"making the link: {100.0 * self._done:.0f} %", ACCENT)]
+
+    def _begin(self, site: str) -> str | None:
+        if site and not site.startswith(("https://", "http://")):
+            return "An address begins with https://"
+        play = self._app.play
+        if play is not None:
+            set_preference(_SITE, site)
+            self._slices = link_to(so_far(play.playback.session), site, 0)
+        return None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is at work."""
+        return self._slices is not None
+
+    def update(self) -> None:
+        """Go on with the work for a part of a frame."""
+        end = time.perf_counter() + _BUDGET
+        while self._slices is not None and time.perf_counter() < end:
+            try:
+                self._done = next(self._slices)
+            except StopIteration as done:
+                self._slices = None
+                self._copy(done.value)
+            except ReplayError as error:
+                self._slices = None
+                self._app.say(f"No link: {error.faults[0].removeprefix('the run: ')}.")
+
+    def _copy(self, link: str) -> None:
+        copied = copy_text(link)
+        self._app.say(f"The link is copied, {len(link):,} characters." if copied else "No clipboard was found.")
+
+
+def so_far(session: Session) -> Replay:
+    """The run of a session until its present tick; what was undone is left out."""
+    entries = [entry for entry in session.history.timeline if entry.in_effect and entry.tick <= session.tick]
+    script = script_of(entries, session.world)
+    return run_of("the run", session.level, script, session.tick, state_hash(session.world))

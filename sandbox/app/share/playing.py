@@ -1,33 +1,54 @@
-"""Playing: what a page needs to play a level, or a recording that can be taken over."""
+"""Playing: what a page needs to play a level, or a recording that can be taken over; what it makes things of."""
 
+import contextlib
+import functools
 import math
-from collections.abc import Generator, Sequence
-from dataclasses import asdict
+from collections.abc import Generator, Iterable, Sequence
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from sandbox.app.base.loop import at_once
+from sandbox.app.base.sag_map import SagMap, own_of, sag_sentence, scale_of, subject_words, word_pairs
+from sandbox.app.draw.picture import particles_of
 from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
-from sandbox.app.share.firmness_table import material_rows
-from sandbox.app.share.runs_for_pages import RunForPages, all_at_once, run_for_pages
-from sandbox.app.share.stuffs import parts_for, stuffs_for
-from sandbox.app.sound.timbre import timbres_of
+from sandbox.app.share.runs_for_pages import RunForPages, carried_out, run_for_pages
+from sandbox.app.sound.sound_events import timbres_of
 from sandbox.app.sound.waves import STUFFS
+from sandbox.editor.document import EditError
+from sandbox.editor.edits.joining import joining_commands
+from sandbox.editor.storage.part_files import catalogue
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.checks import CheckDef, bounds_of, window_of
-from sandbox.level.document.model import Level
-from sandbox.level.format.limits import GRAVITY_LIMIT
+from sandbox.level.document.model import ContactsDef, Level, Settings
+from sandbox.level.format.limits import DEFAULT_MATERIAL, GRAVITY_LIMIT
+from sandbox.level.format.quantities import significant
 from sandbox.level.plan.actuators import driving_keys
+from sandbox.level.reading.parse import parse_level
 from sandbox.level.rules.hands import left_of
 from sandbox.level.rules.rule import has_clock
 from sandbox.page.page import page_text, toy_content
 from sandbox.page.start import adding, start_of
+from sandbox.physics import jit
 from sandbox.physics.snapshot import take
+from sandbox.physics.softness.body_motion import FLAT, BodyMotion
+from sandbox.physics.softness.firmness import WORDS as SAGS
+from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeters, measured_bodies
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.commands.records import ScriptLine
+from sandbox.session.commands import Command
+from sandbox.session.commands.records import ScriptLine, to_record
 from sandbox.session.replay.format import header, seal
 from sandbox.session.replay.link import level_record
+from sandbox.session.session import Session
+from sandbox.tools.drawing import MATERIALS
+from sandbox.tools.dropping import COLOURS, PARTS, USUAL_RATE, at_rate, in_pace
+from sandbox.tools.dropping import DIGITS as PART_DIGITS
+from sandbox.tools.pulling import FIRM
+from sandbox.tools.tool import Loop, usual_size
 
 # Metrics that need the energies of areas and bends, which a page does not have.
 NOT_MEASURED = ("energy", "potential_energy")
@@ -50,7 +71,7 @@ def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None =
 
 def playable(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> Playable:
     """As `page_of`, for a page of any kind. Raises CommandError."""
-    return all_at_once(playable_in_slices(level, script, ticks))
+    return at_once(playable_in_slices(level, script, ticks))
 
 
 def playable_in_slices(
@@ -80,7 +101,7 @@ def playable_in_slices(
         "begin": begin,
     }
     _, low, _, high = scene["view"]
-    made = made_looks() | stuffs_for(world.settings.tick_rate)
+    made = made_looks() | materials_for(world.settings.tick_rate)
     start, added = start_of(world), adding(world) | {"made": made} | parts_for(level, high - low)
     content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
     return Playable(level.name, level.description, content)
@@ -156,3 +177,145 @@ def _sounds(world: LevelWorld) -> dict[str, Any]:
 
 def _finite(value: float) -> float:
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else 0.0
+
+
+# Cs and Cd of a spring that a page adds: it does not weigh what hangs on it.
+SPRINGY = {"stiffness": 0.02, "damping": 0.02}
+
+
+def materials_for(tick_rate: int) -> dict[str, Any]:
+    """Materials, Cs and Cd of ropes and rods and of springs, and Cs and Cd by words of firmness."""
+    materials = {
+        material.name: {
+            **_at_rate(tick_rate, material.stiffness, material.damping),
+            "density": material.density,
+            "colours": COLOURS if material.name == "jelly" else (),
+            "more": material.more,
+        }
+        for material in MATERIALS.values()
+    }
+    words = {word: list(_at_rate(tick_rate, *pair).values()) for word, pair in USUAL.items()}
+    firmest = {"stiffness": FIRM, "damping": FIRM}
+    made = {"stuffs": materials, "firmest": firmest, "springy": at_rate(SPRINGY, tick_rate)}
+    return made | {"words": words, "sags": SAGS}
+
+
+def parts_for(level: Level, height: float) -> dict[str, Any]:
+    """Parts that a page of a level drops: those of the window's strip, as large as there at first, and the catalogue.
+
+    height: of the view [m]. Each has an id, a name, records that add it about the origin, and its ghost [m].
+    """
+    bare, size = _bare(level), usual_size(height)
+    world, parts = build_world(bare), []
+    for number, part in enumerate(PARTS.values()):
+        made = part.make(size, (0.0, 0.0), (0.0, 0.0), COLOURS[number % len(COLOURS)])
+        ghost = [[(size * x, size * y) for x, y in ([*loop, loop[0]] if part.solid else loop)] for loop in part.ghost]
+        commands = [in_pace(made, level.settings.tick_rate)]
+        parts.append(_part(f"part-{part.name}", part.name, bare, world, commands, ghost))
+    return {"parts": parts, "catalogue": _catalogue_for(bare.model_dump_json(exclude_none=True))}
+
+
+def _bare(level: Level) -> Level:
+    """A level with what kits of bodies follow from, and nothing else: most levels have the same kits."""
+    water = [zone for zone in level.zones if zone.water is not None]
+    return Level(
+        format=level.format, version=level.version, name="parts",
+        settings=Settings(tick_rate=level.settings.tick_rate, gravity=level.settings.gravity),
+        contacts=(level.contacts or ContactsDef()) if level.has_contacts else None,
+        zones=tuple(water[:1]),
+    )  # fmt: skip
+
+
+@functools.cache
+def _catalogue_for(text: str) -> list[dict[str, Any]]:
+    """Shipped parts of the catalogue that can join the level of this text."""
+    bare, found = parse_level(text.encode(), "parts"), []
+    world = build_world(bare)
+    for file in catalogue():
+        if file.is_own or file.level is None:
+            continue
+        left, low, right, high = particles_of(Session(file.level).snapshot())
+        x, y = (right + left) / 2, (high + low) / 2
+        dx, dy = right - x, high - y
+        box = [(-dx, -dy), (dx, -dy), (dx, dy), (-dx, dy), (-dx, -dy)]
+        with contextlib.suppress(EditError):
+            commands = joining_commands(file.level, world, (-x, -y))
+            found.append(_part(f"catalogue-{file.path.stem}", file.name.lower(), bare, world, commands, [box]))
+    return found
+
+
+def _part(
+    key: str, name: str, level: Level, world: LevelWorld, commands: Iterable[Command], ghost: Iterable[Loop]
+) -> dict[str, Any]:
+    records = [carried_out(level, world, to_record(command, world)) for command in commands]
+    for stuff in (record["kit"]["materials"] for record in records if "kit" in record):
+        # A level may have another of that name.
+        stuff["name"] = [each if each == DEFAULT_MATERIAL else f"{each} of {name}" for each in stuff["name"]]
+    lines = [[[significant(x, PART_DIGITS), significant(y, PART_DIGITS)] for x, y in loop] for loop in ghost]
+    return {"id": key, "name": name, "records": records, "ghost": lines}
+
+
+def _at_rate(tick_rate: int, stiffness: float, damping: float) -> dict[str, float]:
+    pair = {"stiffness": stiffness, "damping": damping}
+    return pair if tick_rate == USUAL_RATE else at_rate(pair, tick_rate)
+
+
+# Cs and Cd for the words of firmness where nothing sags that could tell what they mean.
+USUAL = {"jelly": (0.01, 0.1), "soft": (0.05, 0.2), "firm": (0.3, 0.5), "hard": (0.8, 0.9), "rigid": (1.0, 1.0)}
+_ALL = "All"
+# Work [s] on runs between two answers.
+_SLICE = 0.02
+
+_Rows = list[dict[str, Any]]
+
+
+def material_rows(world: World, level: Level, done: bool) -> Generator[float, None, _Rows]:
+    """Materials that springs have; before several of them, all as one. Yields how much is done while runs go on.
+
+    What is shown first is the material that the level's text speaks of, else that of the most springs.
+    """
+    used = [slot for slot in range(len(world.material_names)) if (world.material == slot).any()]
+    rows: list[tuple[str, int | None]] = [(world.material_names[slot], slot) for slot in used]
+    if len(rows) > 1:
+        rows.insert(0, (_ALL, None))
+    counts = np.bincount(world.material[world.material >= 0], minlength=1)
+    first = None if level.look is None else level.look.material
+    shown = first if first in world.material_names else world.material_names[int(np.argmax(counts))]
+    subjects, meters, found = measured_bodies(world), SagMeters(), []
+    for name, slot in rows:
+        own = own_of(level, name) if slot is not None else None
+        made = yield from _words(world, slot, subjects, meters, own or (), float(done))
+        found.append({"name": name, "slot": slot, "is_first": slot is not None and name == shown, **made})
+    return found
+
+
+def _words(
+    world: World,
+    material: int | None,
+    subjects: dict[str, MeasuredBody],
+    meters: SagMeters,
+    own: tuple[float, ...],
+    done: float,
+) -> Generator[float, None, dict[str, Any]]:
+    """The words, the sentence and the map of the largest body of a material."""
+    of_it = [each for each in subjects.values() if material in (None, int(world.material[each.body.springs[0]]))]
+    if not of_it or not jit.COMPILED:
+        return {"words": USUAL}
+    subject = max(of_it, key=lambda each: len(each.body.springs))
+    meter = meters.of(world, subject)
+    meter.trace()
+    while meter.is_busy:
+        meter.advance(_SLICE)
+        yield done
+    if meter.curve is None:
+        return {"words": USUAL}
+    motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
+    motion = replace(motion, curve=meter.curve)
+    support, pairs = meter.body.support, word_pairs(meter, motion)
+    said = sag_sentence(subject.name, support)
+    return {
+        "words": pairs,
+        "subject": subject_words(subject.name, support),
+        "says": {"sag": said.sag, "flat": said.flat, "flat_from": FLAT},
+        "map": SagMap.of(motion, scale_of(motion, pairs, own)).as_data(),
+    }

@@ -1,8 +1,8 @@
-"""Runs for pages: the commands of a run with kits in place of definitions of bodies, and without what was undone."""
+"""Runs for pages and links: commands with kits in place of definitions of bodies, and without what was undone."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from sandbox.app.draw.scene import joined_scene
 from sandbox.level.assembly.build_world import build_world
@@ -17,10 +17,11 @@ from sandbox.physics.step import step
 from sandbox.session.actions import RuleActions
 from sandbox.session.commands import CommandError, Redo, Undo, apply
 from sandbox.session.commands.records import ScriptLine, from_record, script_of
+from sandbox.session.link.scene_link import fragment_of, level_record
 from sandbox.session.replay.format import TICK_DIGITS
+from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 
-T = TypeVar("T")
 _ADD = "add_body"
 # Of what is drawn: fields that hold slots of particles, and of springs, at any depth.
 _PARTICLES = frozenset(("triangles", "loops", "knots", "hub", "inner", "outer", "spokes", "slot"))
@@ -33,16 +34,6 @@ class RunForPages(NamedTuple):
     script: tuple[ScriptLine, ...]
     hashes: list[str]
     world: LevelWorld
-
-
-def all_at_once(slices: Generator[float, None, T]) -> T:
-    """What work in slices comes to."""
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            made: T = end.value
-            return made
 
 
 def is_for_pages(line: ScriptLine) -> bool:
@@ -138,3 +129,24 @@ def _in_own_slots(things: Any, first: Mapping[str, int], name: str = "") -> Any:
     if isinstance(things, int) and not isinstance(things, bool) and name in (*_PARTICLES, *_SPRINGS):
         return things - first["spring" if name in _SPRINGS else "particle"]
     return things
+
+
+def link_to(replay: Replay, site: str, at: int) -> Generator[float, None, str]:
+    """A link to a recorded run on a site, which its page shows from a tick on; each slice gives the part done, 0..1.
+
+    site: the address of the folder that `write_site` wrote; "": the fragment alone. What was undone is left out.
+    Raises ReplayError.
+    """
+    if not all(map(is_for_pages, replay.script)):
+        try:
+            run = yield from run_for_pages(replay.level, replay.script, replay.ticks, lambda _: "")
+        except CommandError as error:
+            raise ReplayError(f"{replay.source}: {error}") from None
+        replay = replace(replay, script=run.script)
+    return f"{page_address(replay.level, site)}#{fragment_of(replay, at)}"
+
+
+def page_address(level: Level, site: str) -> str:
+    """The address of a level's page on a site, where it is a shipped level; else that of the site."""
+    site, name = site.partition("#")[0], level_record(level)["level"]
+    return f"{site.rstrip('/')}/levels/{name}.html" if site and isinstance(name, str) else site

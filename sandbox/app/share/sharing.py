@@ -11,13 +11,20 @@ from typing import Literal
 
 import pygame
 
-from sandbox.app.base.desktop import copy_text, copying_picture, open_path
-from sandbox.app.base.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
+from sandbox.app.base.desktop import (
+    chosen_path,
+    copy_text,
+    copying_picture,
+    free_path,
+    move_new,
+    open_path,
+    pictures_folder,
+    plain_name,
+)
 from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import ACCENT, Colour
 from sandbox.app.draw.picture import write_png
-from sandbox.app.film.film import Film, last_ticks
-from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.film.film import Film, FilmPair, last_ticks
 from sandbox.app.film.kinds import KINDS, Missing, Size, require
 from sandbox.app.share.export import Excerpt, Export, Slices
 from sandbox.app.widgets.dialogs import Choice, choose
@@ -69,7 +76,7 @@ class Sharing:
         self._app = app
         self.is_open = False
         self.film: Film | FilmPair | None = None
-        self.wanted = Choices("gif", 0.0, 0.0, SIZES[0], True, "")
+        self.choices = Choices("gif", 0.0, 0.0, SIZES[0], True, "")
         self.pictures: list[pygame.Surface] = []
         self.note = ""
         self.done = 0.0
@@ -109,13 +116,13 @@ class Sharing:
     def _take(self, film: Film | FilmPair) -> None:
         self.film = film
         kind, size = preference(KIND), preference(SIZE)
-        self.wanted = Choices(
+        self.choices = Choices(
             kind if isinstance(kind, str) and kind in KINDS else "gif", max(0.0, film.seconds - USUAL), film.seconds,
             SIZES[1] if size == "large" else SIZES[0], preference(NAMED) is not False, "",
         )  # fmt: skip
         self._say_where()
         if film.seconds < SHORTEST_FILM:
-            self.wanted = replace(self.wanted, kind="png")
+            self.choices = replace(self.choices, kind="png")
             self.note = "Nothing has moved yet, so there is only this picture. Let it play for a few seconds first."
         self._suggest_name()
 
@@ -130,17 +137,17 @@ class Sharing:
 
     def choose(self, **changes: object) -> None:
         """Change what is wanted."""
-        self.wanted = replace(self.wanted, **changes)  # type: ignore[arg-type]
+        self.choices = replace(self.choices, **changes)  # type: ignore[arg-type]
         if self.is_open:
             self._film_preview()
         self._say_where()
         if "kind" in changes:
-            set_preference(KIND, self.wanted.kind)
+            set_preference(KIND, self.choices.kind)
             self._suggest_name()
         if "size" in changes:
-            set_preference(SIZE, "large" if self.wanted.size == SIZES[1] else "small")
+            set_preference(SIZE, "large" if self.choices.size == SIZES[1] else "small")
         if "named" in changes:
-            set_preference(NAMED, self.wanted.named)
+            set_preference(NAMED, self.choices.named)
 
     def choose_liveliest(self) -> None:
         """Take the seconds in which the most moved."""
@@ -149,13 +156,13 @@ class Sharing:
             return
         first, last = last_ticks(play.playback.session, film.seconds)
         rate = play.playback.session.world.settings.tick_rate
-        start = (play.playback.liveliness.liveliest(first, last, round(LIVELY * rate)) - first) / rate
+        start = (play.playback.activity.liveliest(first, last, round(LIVELY * rate)) - first) / rate
         self.choose(start=start, end=min(start + LIVELY, film.seconds))
 
     def _film_preview(self) -> None:
         """Draw what is chosen again, where other seconds are."""
-        film, wanted = self.film, self.wanted
-        chosen = (0.0, film.seconds) if film is not None and wanted.kind == "png" else (wanted.start, wanted.end)
+        film, choices = self.film, self.choices
+        chosen = (0.0, film.seconds) if film is not None and choices.kind == "png" else (choices.start, choices.end)
         if film is None or chosen == self._previewed:
             return
         self._previewed, self.pictures = chosen, []
@@ -173,32 +180,32 @@ class Sharing:
             self.note = f"Goes to {_shown(pictures_folder())}"
 
     def _suggest_name(self) -> None:
-        if self.wanted.own_name or self.film is None:
+        if self.choices.own_name or self.film is None:
             return
         try:
             name = plain_name(self.level_name or NAMELESS)
-            path = free_path(pictures_folder(), name, f".{self.wanted.kind}")
+            path = free_path(pictures_folder(), name, f".{self.choices.kind}")
         except OSError as error:
             self.note = f"The folder for pictures cannot be made: {error.strerror or error}."
             return
-        self.wanted = replace(self.wanted, name=path.stem)
+        self.choices = replace(self.choices, name=path.stem)
 
     def save(self) -> None:
         """Begin to write what is wanted."""
-        film, wanted = self.film, self.wanted
+        film, choices = self.film, self.choices
         if film is None or self._slices is not None:
             return
         try:
-            require(wanted.kind)
-            path = chosen_path(pictures_folder(), wanted.name, f".{wanted.kind}")
+            require(choices.kind)
+            path = chosen_path(pictures_folder(), choices.name, f".{choices.kind}")
         except (Missing, ValueError) as error:
             self._tell(str(error))
             return
         except OSError as error:
             self._tell(f"The folder for pictures cannot be made: {error.strerror or error}.")
             return
-        name = self.level_name if wanted.named else ""
-        excerpt = Excerpt(wanted.kind, wanted.start, wanted.end, KINDS[wanted.kind].usual_fps, wanted.size, name)
+        name = self.level_name if choices.named else ""
+        excerpt = Excerpt(choices.kind, choices.start, choices.end, KINDS[choices.kind].usual_fps, choices.size, name)
         self._export, self.done, self.saved = Export(film, excerpt, path, move_new), 0.0, None
         self.note = "Play on closes this page: it is written while you play."
         self._slices = self._export.slices()
@@ -237,7 +244,7 @@ class Sharing:
         """Choose again, of the same seconds."""
         self.saved = None
         self._say_where()
-        self.wanted = replace(self.wanted, own_name=False)
+        self.choices = replace(self.choices, own_name=False)
         self._suggest_name()
 
     def open_folder(self) -> None:
@@ -288,10 +295,10 @@ class Sharing:
             return self._export.picture
         if not self.pictures:
             return None
-        wanted = self.wanted
-        at = wanted.end
-        if wanted.kind != "png" and wanted.end > wanted.start:
-            at = self._shown_at % (wanted.end - wanted.start)
+        choices = self.choices
+        at = choices.end
+        if choices.kind != "png" and choices.end > choices.start:
+            at = self._shown_at % (choices.end - choices.start)
         return self.pictures[min(int(at * self._preview_fps), len(self.pictures) - 1)]
 
     def status(self) -> list[tuple[str, Colour]]:

@@ -1,18 +1,21 @@
 """Index page: the list of a site's levels, with a toy at its top, and what plays each level as a preview."""
 
 import html
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
+
+import pygame
 
 from sandbox.app.draw.camera import Box, Camera
-from sandbox.app.draw.picture import crop_of, particles_of, view_of
+from sandbox.app.draw.picture import crop_of, draw_picture, particles_of, view_of
 from sandbox.app.draw.picture_cache import SIZE, SUFFIX
 from sandbox.app.gallery.sections import SECTIONS, GallerySection
-from sandbox.app.site.link_card import link_card
 from sandbox.export.policy import policy
 from sandbox.level.document.model import Level
+from sandbox.level.format.writing import write_file
 from sandbox.page.bundle import BUNDLE
 from sandbox.page.page import COMPILING, ICON, KERNELS, filled, hint_markup
 from sandbox.physics.snapshot import Snapshot
@@ -165,3 +168,52 @@ def _around(level: Level, state: Snapshot) -> Box:
 
 def _numbers(box: Box) -> str:
     return ",".join(f"{value:.{DIGITS}f}" for value in box)
+
+
+# A picture's size [pixels], which all who show it cut to, and how long its file is at most [bytes].
+CARD_SIZE, MOST_BYTES = (1200, 630), 60_000
+# A picture of a longer file is blurred by one step after the other, until it fits.
+_BLURS = (0.85, 0.7, 0.6, 0.5, 0.4, 0.3)
+
+
+def is_address(text: str) -> bool:
+    """Whether a text is where a site may be: an absolute address without a query or a place in the page."""
+    parts = urlsplit(text)
+    return parts.scheme in ("http", "https") and bool(parts.netloc) and not (parts.query or parts.fragment)
+
+
+def link_card(title: str, words: str, page: str, picture: str, address: str | None) -> str:
+    """The elements of a page's head; page, picture: quoted addresses in the site, which is at an absolute address.
+
+    address: without one what asks for absolute addresses is left out.
+    """
+    card = {"og:type": "website", "og:title": title, "og:description": words}
+    if address is not None:
+        root = address.rstrip("/")
+        card |= {"og:url": f"{root}/{page}", "og:image": f"{root}/{picture}", "og:image:alt": title}
+        card |= dict(zip(("og:image:width", "og:image:height"), map(str, CARD_SIZE), strict=True))
+        card["twitter:card"] = "summary_large_image"
+    return "".join(f'<meta {_naming(name)}="{name}" content="{html.escape(said)}">\n' for name, said in card.items())
+
+
+def _naming(name: str) -> str:
+    return "name" if name.startswith("twitter") else "property"
+
+
+def write_card_picture(level: Level, snapshot: Snapshot, path: Path) -> None:
+    """Draw a state of a level into a JPEG file. Raises OSError."""
+    theme = None if level.look is None else level.look.theme
+    picture = draw_picture(level, snapshot, CARD_SIZE, crop_of(level, snapshot), None, theme or "dark")
+    content = _as_jpeg(picture)
+    for blur in _BLURS:
+        if len(content) <= MOST_BYTES:
+            break
+        smaller = pygame.transform.smoothscale(picture, (round(CARD_SIZE[0] * blur), round(CARD_SIZE[1] * blur)))
+        content = _as_jpeg(pygame.transform.smoothscale(smaller, CARD_SIZE))
+    write_file(path, content)
+
+
+def _as_jpeg(picture: pygame.Surface) -> bytes:
+    data = io.BytesIO()
+    pygame.image.save(picture, data, "card.jpg")
+    return data.getvalue()

@@ -7,13 +7,13 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from sandbox.app.base import coefficient_scale, gamepads, loop
-from sandbox.app.draw import effects, looks, themes, water
-from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, treads, wheels
+from sandbox.app.base import gamepads, loop, sag_map
+from sandbox.app.draw import colours, effects, looks, water
+from sandbox.app.draw.things import belt_marks, drawables, faces, level_slots, members, soft, wheels
 from sandbox.app.panel import engineers_rows, readings
 from sandbox.app.play import hand_labels, stage
 from sandbox.app.run import playback
-from sandbox.app.sound import bank, sound_events, voices, waves
+from sandbox.app.sound import sound_events, voices, waves
 from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
@@ -47,8 +47,8 @@ def shared_values() -> dict[str, dict[str, Any]]:
         | {"ROPE_RADIUS": pulling.THICKEST}
         | _of(drawing, "HAND_TOLERANCE", "SKIN", "THICKEST", "REFUSALS"),
         "MESH": _of(fitting, "NUMBERS", "PLACES", "TRIANGLES", "PAIRS"),
-        "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
-        | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
+        "PAD": _of(sag_map, "NUMBERED", "DIGITS", "END")
+        | {"LOWEST": sag_map.PLAIN.lowest, "REST": sag_map.PLAIN.rest}
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},
         "SOLVING": {"LABELS": engineers_rows.SOLVER_LABELS, "TIPS": engineers_rows.SOLVER_TIPS},
         "SOUND": _of(
@@ -57,19 +57,20 @@ def shared_values() -> dict[str, dict[str, Any]]:
         )
         | _of(waves, "SCALE", "LOWEST", "STEPS")
         | _of(voices, "VOICES", "REST", "MOTOR_FADE", "WIDTH")
-        | _of(bank, "LEVELS"),
+        | _of(waves, "LEVELS"),
         "THINGS": _of(looks, "STRANDS")
-        | {"WORKING": drawables.WORKING, "LAID": drawables.CRATES, "HANGER": strands.HANGER}
+        | {"WORKING": drawables.WORKING, "LAID": drawables.CRATES, "HANGER": members.HANGER}
         | _of(members, "TRUSS", "MESH", "LOOSE", "BRACE"),
-        "STRAIN": _of(frame, "FLUSH_FROM", "FLUSH_RANGE") | _of(soft, "LEAST_FLUSH"),
-        "LINES": _of(strands, "HALF", "PERIOD", "USUAL_PERIOD", "MOST_OF_STEP", "LEAST", "LEAST_BEND")
-        | {"PLANKS": members.PLANKS_A_CELL, "BOLTS_FROM": members.BOLTS_FROM, "CYLINDER": _hex(springs.CYLINDER)},
+        "STRAIN": _of(level_slots, "FLUSH_FROM", "FLUSH_RANGE") | _of(soft, "LEAST_FLUSH"),
+        "LINES": _of(members, "HALF", "PERIOD", "USUAL_PERIOD", "MOST_OF_STEP", "LEAST", "LEAST_BEND")
+        | {"PLANKS": members.PLANKS_A_CELL, "BOLTS_FROM": members.BOLTS_FROM, "CYLINDER": _hex(members.CYLINDER)},
         "SHAPES": _of(soft, "LEAST_ROUNDING", "MOST_ROUNDING", "MOST_GROWN", "LINE_HALF")
-        | _of(sheets, "CLOTH_TEXELS", "LAID_TEXELS", "HEM_HALF"),
+        | _of(soft, "CLOTH_TEXELS", "LAID_TEXELS", "HEM_HALF"),
         "TREADS": _of(
-            treads, "STRAP_HALF", "CHEVRON", "CHEVRON_HALF", "SIDE", "APART", "MOST_PASSING", "LEAST_APART", "BESIDE"
+            belt_marks, "STRAP_HALF", "CHEVRON", "CHEVRON_HALF", "SIDE", "APART", "MOST_PASSING", "LEAST_APART",
+            "BESIDE",
         )
-        | {"COLOUR": _hex(treads.CHEVRON_COLOUR)},
+        | {"COLOUR": _hex(belt_marks.CHEVRON_COLOUR)},
         "WHEELS": _of(wheels, "RIM_FROM", "LUGS_FROM", "LUG"),
         "WATER": _of(
             water, "CLEAR", "MURKY", "DEEP", "NEAR", "SLOWEST", "PER_SPEED", "HIGHEST", "LENGTH", "PERIOD", "FADE",
@@ -80,8 +81,8 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "FACES": _of(faces, "LARGEST", "SMALLEST", "SQUEEZED", "FAST", "BLINK", "BLINK_EVERY", "MOST_COMPARED")
         | {"TONGUE": _hex(faces.TONGUE)},
         "COLOURS": {
-            "SQUEEZED": _hex(themes.SQUEEZED_FLUSH), "STRETCHED": _hex(themes.STRETCHED_FLUSH),
-            "SANDS": list(map(_hex, themes.SANDS)),
+            "SQUEEZED": _hex(colours.SQUEEZED_FLUSH), "STRETCHED": _hex(colours.STRETCHED_FLUSH),
+            "SANDS": list(map(_hex, colours.SANDS)),
         },
     }  # fmt: skip
 

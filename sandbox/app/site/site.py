@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pygame
 
+from sandbox.app.base.loop import at_once
 from sandbox.app.draw.colours import THEME_NAMES
-from sandbox.app.draw.picture import run_at_once
+from sandbox.app.draw.picture import run_ahead
 from sandbox.app.draw.picture_cache import (
     PARTICLES,
     SECONDS,
     SUFFIX,
-    draw_at_once,
+    draw_in_slices,
     keep_picture,
     picture_key,
     shipped_picture,
@@ -28,9 +29,10 @@ from sandbox.app.site.index_page import (
     IndexPage,
     SiteLevel,
     index_text,
+    link_card,
     sections_of,
+    write_card_picture,
 )
-from sandbox.app.site.link_card import link_card, write_card_picture
 from sandbox.level.format.writing import write_file
 from sandbox.level.hints import worded
 from sandbox.page.bundle import BUNDLE
@@ -49,7 +51,7 @@ def write_site(levels: Mapping[str, SiteLevel], folder: Path, page: IndexPage) -
     states, following = {}, _following(levels)
     for each in levels.values():
         ticks = round(SECONDS * each.level.settings.tick_rate)
-        states[each.stem] = run_at_once(each.level, ticks, PARTICLES)
+        states[each.stem] = at_once(run_ahead(each.level, ticks, PARTICLES))
         _write_level(each, states[each.stem], folder, page.address, following.get(each.stem))
         yield
     write_file(folder / "index.html", index_text(levels, states, page).encode())
@@ -81,7 +83,7 @@ def _write_level(each: SiteLevel, state: Snapshot, folder: Path, address: str | 
         if drawn.is_file():
             write_file(_made(there), drawn.read_bytes())
         else:
-            keep_picture(draw_at_once(each.level, theme), there)
+            keep_picture(at_once(draw_in_slices(each.level, theme)), there)
         smaller = pygame.transform.smoothscale(pygame.image.load(there), SMALL)
         keep_picture(smaller, there.with_stem(f"{there.stem}-small"))
     if address is not None:

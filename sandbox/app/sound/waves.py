@@ -3,7 +3,10 @@
 Every wave is mono, its peak is 1, and it begins and ends at 0, so that none clicks.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,3 +181,164 @@ def motor(step: int) -> Wave:
     beats = max(round(0.5 * 11.0), 1)
     wave *= 1.0 + 0.18 * np.sin(2.0 * np.pi * beats * np.arange(count) / count)
     return np.asarray(wave / np.abs(wave).max())
+
+
+# Partials of a small bell: frequency over the strike note, time [s] to fall to 1/e, strength.
+_BELL = ((0.5, 0.9, 0.35), (1.0, 0.7, 1.0), (1.2, 0.55, 0.5), (2.0, 0.4, 0.55), (2.74, 0.25, 0.3), (3.76, 0.15, 0.2))
+# Steps of the scale that are played one after the other, and from one to the next [s].
+_RISE, _FALL, _BEAT, _SLOW_BEAT = (15, 17, 18, 20), (13, 12, 10), 0.11, 0.2
+# The step of the first star's ping; each further star is as many steps higher.
+STAR_STEP, STAR_RISE = 18, 2
+
+
+def _note(pitch: float, decay: float, length: float, partials: tuple[float, ...] = (1.0, 0.3, 0.12)) -> Wave:
+    """A plain tone that fades: sines of whole multiples of a pitch [Hz]."""
+    t = seconds(length)
+    wave = np.zeros_like(t)
+    for number, strength in enumerate(partials, 1):
+        wave += strength * np.exp(-t * number / decay) * np.sin(2.0 * np.pi * number * pitch * t)
+    rise = max(int(0.003 * len(t) / length), 2)
+    wave[:rise] *= np.linspace(0.0, 1.0, rise)
+    return wave
+
+
+def _tune(steps: tuple[int, ...], beat: float, decay: float) -> Wave:
+    """Tones of steps of the scale, one after the other; the last one rings on."""
+    every = int(len(seconds(1.0)) * beat)
+    wave = np.zeros(every * (len(steps) - 1) + len(seconds(4.0 * decay)))
+    for number, step in enumerate(steps):
+        tone = _note(pitch_of(step), decay, 4.0 * decay)
+        part = wave[number * every : number * every + len(tone)]
+        part += tone[: len(part)]
+    return wave
+
+
+def bell() -> Wave:
+    """A bell that is struck once."""
+    t, strike = seconds(2.0), pitch_of(18)
+    wave = np.zeros_like(t)
+    for ratio, decay, strength in _BELL:
+        wave += strength * np.exp(-t / decay) * np.sin(2.0 * np.pi * strike * ratio * t)
+    return finished(wave, 0.002)
+
+
+def coin() -> Wave:
+    """Two short high tones, of which the second rings."""
+    low, high = _note(pitch_of(22), 0.08, 0.5), _note(pitch_of(24), 0.2, 0.9)
+    wave = np.zeros(len(high) + len(seconds(0.07)))
+    wave[: len(low)] += 0.8 * low
+    wave[-len(high) :] += high
+    return finished(wave, 0.002)
+
+
+def drum() -> Wave:
+    """A drum that is struck once: a tone that falls, and the slap of the skin."""
+    t = seconds(0.6)
+    wave = np.exp(-t / 0.16) * np.sin(turns(62.0 + 90.0 * np.exp(-t / 0.035)))
+    slap = seconds(0.1)
+    wave[: len(slap)] += 0.5 * noise(len(slap), 60.0, 1800.0, 7) * np.exp(-slap / 0.018)
+    return finished(wave, 0.002)
+
+
+def buzzer() -> Wave:
+    """A reed that says no."""
+    t = seconds(0.45)
+    wave = np.zeros_like(t)
+    for number in range(1, 12, 2):
+        wave += np.sin(2.0 * np.pi * number * 110.0 * t) / number
+        wave += np.sin(2.0 * np.pi * number * 116.5 * t) / number
+    return finished(wave * np.minimum(1.0, (0.45 - t) / 0.08), 0.006)
+
+
+def won() -> Wave:
+    """A run that is won: a chord that climbs."""
+    return finished(_tune(_RISE, _BEAT, 0.4), 0.003)
+
+
+def lost() -> Wave:
+    """A run that is lost: three tones down."""
+    return finished(_tune(_FALL, _SLOW_BEAT, 0.3), 0.004)
+
+
+def star(step: int) -> Wave:
+    """A star that is shown."""
+    return finished(_note(pitch_of(step), 0.25, 1.0, (1.0, 0.15, 0.3)), 0.002)
+
+
+# From one number of `Sample.left` to the next [s].
+GRAIN = 0.01
+LARGEST = 32_767
+
+
+class Note(NamedTuple):
+    """One of the sounds there are: its kind, the step of the scale, and for a thud the stuff that is struck."""
+
+    kind: str
+    step: int
+    stuff: str = ""
+
+
+MAKERS: dict[str, Callable[[Note], Wave]] = {
+    "thud": lambda note: thud(note.step, note.stuff),
+    "splash": lambda note: splash(note.step),
+    "pluck": lambda note: pluck(note.step),
+    "snap": lambda note: snap(note.step),
+    "squeak": lambda note: squeak(note.step),
+    "motor": lambda note: motor(note.step),
+    "bell": lambda _: bell(),
+    "coin": lambda _: coin(),
+    "drum": lambda _: drum(),
+    "buzzer": lambda _: buzzer(),
+    "won": lambda _: won(),
+    "lost": lambda _: lost(),
+    "star": lambda note: star(note.step),
+}
+# How loud each kind is beside the others: what lasts, and what is sharp to the ear, is softer.
+LEVELS = {"thud": 0.8, "splash": 0.5, "pluck": 0.45, "snap": 0.85, "squeak": 0.16, "motor": 0.22}
+# And the signals of rules and of the end of a run.
+SIGNAL_LEVELS = {"bell": 0.5, "coin": 0.4, "drum": 0.8, "buzzer": 0.28, "won": 0.5, "lost": 0.5, "star": 0.35}
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """A wave in 16 bits (n,); left (k,): the largest value, 0..1, that comes GRAIN k [s] after it began."""
+
+    pcm: NDArray[np.int16]
+    left: NDArray[np.float64]
+
+    def left_after(self, seconds: float) -> float:
+        """The largest value, 0..1, that is still to come so long [s] after it began."""
+        place = max(int(seconds / GRAIN), 0)
+        return float(self.left[place]) if place < len(self.left) else 0.0
+
+
+class Bank:
+    """Samples by their notes."""
+
+    def __getitem__(self, note: Note) -> Sample:
+        return _sample(note)
+
+    def make(self, note: Note) -> None:
+        """Make a sample before it is wanted."""
+        self[note]
+
+
+def note(kind: str, pitch: float, stuff: str = "") -> Note:
+    """The note of a kind that is nearest to a pitch [Hz]."""
+    return Note(kind, min(max(step_of(pitch), 0), STEPS - 1), stuff)
+
+
+def level_of(kind: str) -> float:
+    """How loud a kind of sound is beside the others, 0..1."""
+    return LEVELS[kind] if kind in LEVELS else SIGNAL_LEVELS[kind]
+
+
+@cache
+def _sample(note: Note) -> Sample:
+    wave = MAKERS[note.kind](note)
+    mono = np.round(wave * LARGEST).astype(np.int16)
+    size = int(GRAIN * RATE)
+    padded = np.zeros(-(-len(wave) // size) * size)
+    padded[: len(wave)] = np.abs(wave)
+    peaks = padded.reshape(-1, size).max(axis=1)
+    return Sample(mono, np.maximum.accumulate(peaks[::-1])[::-1])

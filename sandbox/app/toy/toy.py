@@ -5,10 +5,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pygame
 
-from sandbox.app.base.loop import LONGEST_FRAME
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.loop import LONGEST_FRAME, Profile
 from sandbox.app.draw.colours import MUTED, show_theme
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.stage import Stage
@@ -16,12 +16,11 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.system_theme import theme_of
 from sandbox.app.sound.sounds import Sounds
-from sandbox.app.toy.frame_motion import FrameMotion
-from sandbox.app.toy.rest import Rest
 from sandbox.app.toy.toy_window import ToyWindow
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import free_particle_at, shown_particles
+from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Shake
 
 # Frames a second: while somebody plays or something moves fast, and while it comes to rest. Looks for events while it
@@ -322,3 +321,103 @@ WAKING = (
     pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP, pygame.KEYDOWN, pygame.WINDOWENTER,
     pygame.WINDOWRESIZED, pygame.MOUSEWHEEL,
 )  # fmt: skip
+
+
+# Time [s] within which the frame follows its window: a mouse jumps, what is held by a box must not.
+FOLLOWS = 0.05
+# The frame is no faster [m/s], accelerates no harder [m/s^2], and is never farther behind [m].
+FASTEST, HARDEST, FARTHEST = 14.0, 400.0, 1.2
+# Slower [m/s] and nearer [m] than this it stands.
+STANDS, IS_THERE = 0.02, 0.002
+
+Vector = tuple[float, float]
+
+
+class FrameMotion:
+    """A frame that follows its window; velocity [m/s], behind [m]: how far it has to go still."""
+
+    def __init__(self) -> None:
+        self.velocity: Vector = (0.0, 0.0)
+        self.behind: Vector = (0.0, 0.0)
+        self._place: tuple[int, int] | None = None
+
+    @property
+    def rests(self) -> bool:
+        """Whether the frame stands where its window is."""
+        return self.velocity == (0.0, 0.0) and self.behind == (0.0, 0.0)
+
+    def see(self, place: tuple[int, int], zoom: float) -> bool:
+        """Take in where the window is now [pixels], a metre being `zoom` pixels; whether it has moved."""
+        before, self._place = self._place or place, place
+        dx, dy = (place[0] - before[0]) / zoom, (before[1] - place[1]) / zoom
+        x, y = self.behind[0] + dx, self.behind[1] + dy
+        far = math.hypot(x, y)
+        share = 1.0 if far <= FARTHEST else FARTHEST / far
+        self.behind = (x * share, y * share)
+        return place != before
+
+    def forget(self, place: tuple[int, int]) -> None:
+        """The window is there, without having been moved: nobody felt it."""
+        self._place = place
+
+    def nudge(self, dx: float, dy: float) -> None:
+        """Move the frame by (dx, dy) [m] as if its window had moved."""
+        self.behind = (self.behind[0] + dx, self.behind[1] + dy)
+
+    def accelerate(self, tick_rate: float) -> Vector:
+        """The acceleration [m/s^2] of the coming tick of 1 / tick_rate s.
+
+        The frame goes where its window is, as fast as v = behind / FOLLOWS, but for the limits. Whatever it does, it
+        comes to rest again, so that all accelerations together are none.
+        """
+        h = 1.0 / tick_rate
+        (x, y), (vx, vy) = self.behind, self.velocity
+        wanted_x, wanted_y = x / FOLLOWS, y / FOLLOWS
+        if math.hypot(x, y) < IS_THERE and math.hypot(vx, vy) < STANDS:
+            wanted_x = wanted_y = 0.0
+        speed = math.hypot(wanted_x, wanted_y)
+        if speed > FASTEST:
+            wanted_x, wanted_y = wanted_x * FASTEST / speed, wanted_y * FASTEST / speed
+        ax, ay = (wanted_x - vx) / h, (wanted_y - vy) / h
+        strength = math.hypot(ax, ay)
+        if strength > HARDEST:
+            ax, ay = ax * HARDEST / strength, ay * HARDEST / strength
+            vx, vy = vx + ax * h, vy + ay * h
+        else:
+            vx, vy = wanted_x, wanted_y
+        self.velocity = (vx, vy)
+        self.behind = (0.0, 0.0) if (vx, vy) == (0.0, 0.0) else (x - vx * h, y - vy * h)
+        return ax, ay
+
+
+# It sleeps after so long [s] at rest, with the pointer over it after so long without a deed.
+DROWSY, WATCHED = 2.0, 12.0
+# Faster than this [pixels/s] half the frames would be seen to be missing.
+FAST = 40.0
+
+
+class Rest:
+    """Follows snapshots; is_over: the toy may sleep; moves_fast: something is fast enough for every frame to count."""
+
+    def __init__(self) -> None:
+        self.moves_fast = True
+        self._stood = self._calm = 0.0
+        self._hovered = False
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing moves, and nobody has done anything for a while."""
+        return self._stood >= DROWSY and self._calm >= (WATCHED if self._hovered else DROWSY)
+
+    def disturb(self) -> None:
+        """Somebody does something."""
+        self._calm = 0.0
+
+    def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool, stood: float) -> None:
+        """Take in the state after a frame of `seconds`, a metre being `zoom` pixels; all has stood for `stood` [s]."""
+        self._hovered, self._stood = hovered, stood
+        self._calm += seconds
+        free = shown_particles(now) & (now.inverse_mass > 0.0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            fastest = np.abs(now.velocity[free]).max(initial=0.0)
+        self.moves_fast = bool(fastest * zoom > FAST)

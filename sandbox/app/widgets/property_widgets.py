@@ -10,9 +10,8 @@ import pygame
 from sandbox.app.base.desktop import copied_text, copy_text
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import action_of, tip_of
-from sandbox.app.draw.colours import MUTED
-from sandbox.app.draw.material_colours import material_colours
-from sandbox.app.draw.themes import rgb_of
+from sandbox.app.draw.colours import MUTED, unpacked
+from sandbox.app.draw.looks import material_colours
 from sandbox.app.widgets.boxes import KEYS, CheckBox, KeyBox, Scrub
 from sandbox.app.widgets.button import Choice
 from sandbox.app.widgets.dialogs import ask, choose
@@ -315,7 +314,7 @@ class PropertyWidgets:
             rows = self._rows(each)
             mixed_row = Row(MIXED.value, colour=MUTED)
             text = each.texts[0] if each.about.kind == "touches" else _choice_text(each)
-            other = Row(text, swatch=rgb_of(colour_of(text)) if text.startswith("#") else None)
+            other = Row(text, swatch=unpacked(colour_of(text)) if text.startswith("#") else None)
             shown = mixed_row if is_mixed else next((row for row in rows if row.text == text), other)
             self.pickers[name].show_value(rows, shown)
 
@@ -330,7 +329,7 @@ class PropertyWidgets:
                     *(Row(particle.id, _kind_of(particle)) for particle in level.particles)]  # fmt: skip
         if about.kind != "material":
             if about.kind == "colour":
-                palette = [Row(name, swatch=rgb_of(colour_of(name))) for name in about.choices]
+                palette = [Row(name, swatch=unpacked(colour_of(name))) for name in about.choices]
                 return [*first, *palette, Row(OTHER_COLOUR)]
             return first + [Row(text) for text in (YES_NO if about.kind == "yes_no" else about.labels or about.choices)]
         colours = material_colours(self._owner.document.level.materials)

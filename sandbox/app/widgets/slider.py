@@ -7,7 +7,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
+from sandbox.app.base.sag_map import PLAIN, CoefficientScale
 from sandbox.app.draw.colours import ACCENT, DECADE, DISABLED, FIELD, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Draggable, Pixel, Widget

@@ -10,13 +10,10 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.base.calm import CALM_RATE, RESTING_RATE, Calm, wait_for_event
-from sandbox.app.base.display import SCALE_RANGE, Display, fitting_layout
-from sandbox.app.base.idle import IdleCollector
-from sandbox.app.base.loop import FRAME_RATE
-from sandbox.app.base.profile import Profile
+from sandbox.app.base.display import SCALE_RANGE, Display, StartRequest, fitting_layout, keep_window
+from sandbox.app.base.idle import IDLE_RATE, RESTING_RATE, IdleCollector, IdleTimer, wait_for_event
+from sandbox.app.base.loop import FRAME_RATE, Profile
 from sandbox.app.base.shortcuts import Mode, hint, use_keys
-from sandbox.app.base.start_request import StartRequest
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
 from sandbox.app.compare.second_run import TwinPlayback
@@ -28,15 +25,13 @@ from sandbox.app.gallery.gallery import Gallery
 from sandbox.app.gallery.sections import FIRST
 from sandbox.app.play.melt_lesson import MeltLesson
 from sandbox.app.play.play_screen import PlayScreen
-from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine
-from sandbox.app.run.best_keeping import BestKeeping
+from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, RunProgress, StatusLine
+from sandbox.app.run.keeping import BestKeeping, SceneKeeping
 from sandbox.app.run.playback import Playback
-from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.settings_sheet import SettingsSheet
 from sandbox.app.settings.system_theme import theme_of
-from sandbox.app.share.link_copying import LinkCopying
-from sandbox.app.share.page import SharePage
+from sandbox.app.share.page import LinkCopying, SharePage
 from sandbox.app.share.sharing import Sharing
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.toy.toy_start import ToyStarter
@@ -46,8 +41,6 @@ from sandbox.app.window.failure import FrameGuard
 from sandbox.app.window.files import FileActions
 from sandbox.app.window.help import show_help
 from sandbox.app.window.input import Input
-from sandbox.app.window.progress import RunProgress
-from sandbox.app.window.window_place import keep_window
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import load_level, read_level
 
@@ -68,7 +61,7 @@ class App:
         self._take_up()
         self.profile = profile or Profile()
         self._collector = IdleCollector()
-        self.calm = Calm()
+        self.idle = IdleTimer()
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
@@ -99,14 +92,14 @@ class App:
 
     # What is on the screen.
 
-    def open(self, wanted: StartRequest) -> None:
+    def open(self, request: StartRequest) -> None:
         """Show what the program was started for."""
-        if wanted.replay is not None:
-            self.start(Playback(wanted.replay.level, wanted.replay))
-        elif wanted.level is not None:
-            self.start(Playback(wanted.level), wanted.source)
-        elif wanted.edit is not None:
-            self.documents.begin(wanted.edit)
+        if request.replay is not None:
+            self.start(Playback(request.replay.level, request.replay))
+        elif request.level is not None:
+            self.start(Playback(request.level), request.source)
+        elif request.edit is not None:
+            self.documents.begin(request.edit)
         else:
             self.open_gallery()
 
@@ -372,7 +365,7 @@ class App:
                 self.display.flip()
         self._progress.end()
         self._seen = self.screen
-        self.calm.follow(frame_time, bool(events) or any(pygame.mouse.get_pressed()) or self.moves)
+        self.idle.follow(frame_time, bool(events) or any(pygame.mouse.get_pressed()) or self.moves)
         spent = time.perf_counter() - started
         self.profile.end_frame(spent)
         self._count(frame_time, spent)
@@ -384,9 +377,9 @@ class App:
         return any(part is not None and part.moves for part in parts)
 
     @property
-    def calm_rate(self) -> int:
+    def idle_rate(self) -> int:
         """Frames [1/s] that are enough while nothing in the window moves."""
-        return RESTING_RATE if self.play is not None and self.play.runs else CALM_RATE
+        return RESTING_RATE if self.play is not None and self.play.runs else IDLE_RATE
 
     def _sound(self) -> None:
         play, covered = self.play, self.ui.is_covered or self.gallery is not None or self.display.hidden
@@ -446,14 +439,14 @@ class App:
 
 def run_app(
     display: Display,
-    wanted: StartRequest,
+    request: StartRequest,
     profile: Profile,
     seconds: float | None,
     given: Mapping[str, Any],
     show_progress: Callable[[], object] = lambda: None,
     says_states: bool = False,
 ) -> None:
-    """Show what is wanted in the window and run until it is closed, or for this many seconds.
+    """Show what is requested in the window and run until it is closed, or for this many seconds.
 
     given: see `Chosen`. show_progress: called now and then until there is something to show. says_states: the window's
     title says what happens.
@@ -466,7 +459,7 @@ def run_app(
     show_progress()
     app.guide.may_offer = True
     app.input.gamepads.begin()
-    app.open(wanted)
+    app.open(request)
     app.documents.offer_recovery()
     show_progress()
     if app.play is not None:
@@ -486,10 +479,10 @@ def run_app(
             profile.reached("the first page")
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
-            if not app.calm.has_come:
+            if not app.idle.has_come:
                 clock.tick(FRAME_RATE)
                 continue
-            if wait_for_event(1.0 / app.calm_rate):
+            if wait_for_event(1.0 / app.idle_rate):
                 # Time that passed asleep is not made up for by what the event sets going.
                 before = max(before, time.perf_counter() - 1.0 / FRAME_RATE)
             profile.rested()

@@ -10,9 +10,8 @@ from collections.abc import Callable
 
 import pygame
 
-from sandbox.app.base.display import Display
-from sandbox.app.base.profile import Profile
-from sandbox.app.base.start_request import StartRequest
+from sandbox.app.base.display import Display, StartRequest
+from sandbox.app.base.loop import Profile
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, TEXT, Colour, mixed
 from sandbox.app.widgets.fonts import plain_font
 
@@ -24,12 +23,12 @@ TITLE_SIZE, LINE_SIZE = 30, 14
 
 
 class _Work(threading.Thread):
-    """Imports the app and finds out what is wanted of it."""
+    """Imports the app and finds out what is asked of it."""
 
     def __init__(self, find: Callable[[], StartRequest]) -> None:
         super().__init__(daemon=True)
         self._find = find
-        self.wanted: StartRequest | None = None
+        self.request: StartRequest | None = None
         self.error: BaseException | None = None
 
     def run(self) -> None:
@@ -39,7 +38,7 @@ class _Work(threading.Thread):
 
             import sandbox.app.window.app  # noqa: F401
 
-            self.wanted = self._find()
+            self.request = self._find()
         except BaseException as error:  # handed on to the thread that waits
             self.error = error
 
@@ -92,21 +91,21 @@ def open_app(
     """
     began = time.perf_counter()
     times = Profile()
-    from sandbox.app.window.window_place import kept_window
+    from sandbox.app.base.display import kept_window
 
     display = Display(scale, kept_window())
     words = _StartPicture(display, times)
     try:
-        wanted = _wait(display, words, times, _Work(find))
+        request = _wait(display, words, times, _Work(find))
     except BaseException:
         display.close()
         raise
-    if wanted is None:
+    if request is None:
         display.close()
         return 0
     from sandbox.app.window.app import run_app
 
-    run_app(display, wanted, times, seconds, {"scale": scale, "theme": theme}, words.show, says_states)
+    run_app(display, request, times, seconds, {"scale": scale, "theme": theme}, words.show, says_states)
     if profile:
         print(times.table(began))
     return 0
@@ -129,4 +128,4 @@ def _wait(display: Display, words: _StartPicture, times: Profile, work: _Work) -
         clock.tick(START_RATE)
     if work.error is not None:
         raise work.error
-    return work.wanted
+    return work.request

@@ -7,9 +7,19 @@ of how far inside and how lit gives the colour. All bodies of a layer are drawn 
 import math
 from typing import NamedTuple
 
-from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
-from sandbox.app.draw.raster.mark_kernels import from_segment, row_of_capsule
-from sandbox.app.draw.raster.pixels import PixelRow, Pixels, Sheets, Singles, SlotTables, laid_over
+from sandbox.app.draw.raster.marks import from_segment, row_of_capsule
+from sandbox.app.draw.raster.pixels import (
+    PixelRow,
+    Pixels,
+    Sheets,
+    Singles,
+    SlotTables,
+    add_outline,
+    blur,
+    clear,
+    find_box,
+    laid_over,
+)
 from sandbox.physics.arrays import FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel, kernel
 

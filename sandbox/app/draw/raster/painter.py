@@ -9,6 +9,7 @@ import numpy as np
 import pygame
 from numpy.typing import ArrayLike, NDArray
 
+from sandbox.app.draw.colours import unpacked
 from sandbox.app.draw.raster.bodies import (
     FLUSH_CELL,
     SOFTNESS,
@@ -20,10 +21,20 @@ from sandbox.app.draw.raster.bodies import (
     Skins,
     paint_bodies,
 )
-from sandbox.app.draw.raster.cells import CellArrays, paint_cells
-from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG, DISC, GLOW, HAIR, STRIP, STROKE, MarkArrays, paint_marks
-from sandbox.app.draw.raster.outlines import Loops, trace_outlines
-from sandbox.app.draw.raster.pixels import FAR, Pixels, Sheets
+from sandbox.app.draw.raster.marks import (
+    ACROSS,
+    ALONG,
+    DISC,
+    GLOW,
+    HAIR,
+    STRIP,
+    STROKE,
+    CellArrays,
+    MarkArrays,
+    paint_cells,
+    paint_marks,
+)
+from sandbox.app.draw.raster.pixels import FAR, Loops, Pixels, Sheets, trace_outlines
 from sandbox.app.draw.raster.shadows import FACTOR, ShadowScratch, Thrown, paint_shadows
 from sandbox.physics import jit
 from sandbox.physics.arrays import Floats, Slots
@@ -168,7 +179,7 @@ class Painter:
         tones = sheets.reshape(len(sheets), -1)[:, 0].tolist()
         seen = (np.abs(arrays.corner) < FAR).all(axis=1)
         for corner, sheet in zip(arrays.corner[seen].tolist(), arrays.sheet[seen].tolist(), strict=True):
-            pygame.draw.polygon(self.surface, _rgb(tones[sheet]), (corner[:2], corner[2:4], corner[4:]))
+            pygame.draw.polygon(self.surface, unpacked(tones[sheet]), (corner[:2], corner[2:4], corner[4:]))
 
     def shadows(self, thrown: Thrown, shapes: Outlines, offset: Sequence[float], colour: int, strength: float) -> None:
         """Throw shadows; there are none while kernels are not compiled."""
@@ -230,10 +241,6 @@ def _has_plain_pixels(surface: pygame.Surface) -> bool:
     return is_whole and surface.get_bitsize() == 32 and surface.get_shifts()[:3] == (16, 8, 0)
 
 
-def _rgb(colour: int) -> tuple[int, int, int]:
-    return (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
-
-
 def _plain_marks(surface: pygame.Surface, layer: MarkArrays, tiles: Sheets) -> None:
     # The middle of a tile stands for all of it.
     tones = tiles[:, ACROSS // 2, ALONG // 2].astype(np.int64)
@@ -248,11 +255,11 @@ def _plain_marks(surface: pygame.Surface, layer: MarkArrays, tiles: Sheets) -> N
     )
     for (ax, ay, bx, by), half, tone, kind in rows:
         if kind <= HAIR:
-            pygame.draw.aaline(surface, _rgb(tone), (ax, ay), (bx, by), max(1, round(2 * half)))
+            pygame.draw.aaline(surface, unpacked(tone), (ax, ay), (bx, by), max(1, round(2 * half)))
         elif half < 1.0:
-            surface.fill(_rgb(tone), (round(ax), round(ay), 1, 1))
+            surface.fill(unpacked(tone), (round(ax), round(ay), 1, 1))
         else:
-            pygame.draw.aacircle(surface, _rgb(tone), (ax, ay), round(half))
+            pygame.draw.aacircle(surface, unpacked(tone), (ax, ay), round(half))
 
 
 def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
@@ -269,6 +276,6 @@ def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
             corners = points.tolist()
             # An outline inside another is a hole: what is seen through it is lost, and only its rim is drawn.
             if loop == first:
-                pygame.draw.polygon(surface, _rgb(fill), corners)
+                pygame.draw.polygon(surface, unpacked(fill), corners)
             if alpha > 0.0:
-                pygame.draw.aalines(surface, _rgb(line), True, corners)
+                pygame.draw.aalines(surface, unpacked(line), True, corners)

@@ -4,8 +4,7 @@ import math
 from typing import NamedTuple
 
 from sandbox.app.draw.raster.bodies import Outlines
-from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
-from sandbox.app.draw.raster.pixels import FAR, Pixels, Singles, laid_over
+from sandbox.app.draw.raster.pixels import FAR, Pixels, Singles, add_outline, blur, clear, find_box, laid_over
 from sandbox.physics.arrays import FloatRows, Floats, Int32s, Slots
 from sandbox.physics.jit import inner_kernel, kernel
 

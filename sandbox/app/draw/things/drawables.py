@@ -1,45 +1,42 @@
 """Drawables: groups the slots of a world into what is drawn; made again where something breaks or joins."""
 
+from itertools import pairwise
+
 import numpy as np
+import pygame
 from numpy.typing import NDArray
 
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import Theme, dark_edge, outline_of
 from sandbox.app.draw.looks import SOFT_SKINS, STRANDS, added_spring_look
 from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.raster.pixels import FAR
 from sandbox.app.draw.raster.shadows import Thrown
-from sandbox.app.draw.themes import dark_edge, outline_of
-from sandbox.app.draw.things.balls import Balls
-from sandbox.app.draw.things.borders import hull_of
+from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.things.faces import DrawnFace, Faces, faces_of
-from sandbox.app.draw.things.frame import Frame, Seen
-from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, Piece
-from sandbox.app.draw.things.members import Members
-from sandbox.app.draw.things.sheets import Sheets
-from sandbox.app.draw.things.soft import Shape, Soft, shape_of, shapes_of
-from sandbox.app.draw.things.springs import Working
-from sandbox.app.draw.things.strands import Strands
-from sandbox.app.draw.things.wheels import DrawnWheel
+from sandbox.app.draw.things.level_slots import (
+    Actor,
+    Frame,
+    Join,
+    LevelSlots,
+    Piece,
+    Seen,
+    hull_of,
+    joined_slots,
+    level_slots_of,
+    whole_triangles,
+)
+from sandbox.app.draw.things.members import Members, Strands, Working
+from sandbox.app.draw.things.soft import Shape, Sheets, Soft, shape_of, shapes_of
+from sandbox.app.draw.things.wheels import Balls, DrawnWheel
+from sandbox.level.document.model import Level
+from sandbox.physics.analysis.query import shown_particles, shown_springs
+from sandbox.physics.keeping.equipment import Joined
+from sandbox.physics.snapshot import Snapshot
 
 Mask = NDArray[np.bool_]
 Slots = NDArray[np.int64]
-Floats = NDArray[np.float64]
-
-WORKING = ("coil", "muscle", "piston")
-CLOTH = "cloth"
-CRATES = ("wood", "stone", "brick")
-WINDOW = 0xBFE6FF
-# How far a panel stands out beyond its bars, and a window back from its corners [pixels at scale 1].
-PANEL_OUT, WINDOW_IN = 4.0, -3.0
-CRATE_LINE = 1.6
-# Lengths that differ by this part are the same.
-AS_LONG = 1e-3
-
-
-def _strangers(there: Mask, own: Slots) -> Slots:
-    """Slots that are there and belong to none of the level's things."""
-    left = there.copy()
-    left[own[own < len(left)]] = False
-    return np.flatnonzero(left)
 
 
 class Drawables:
@@ -221,3 +218,92 @@ class Drawables:
                 tips = [frame.at[slot] + radius * (0.15 * out + by * side) for by in (-0.07, 0.0, 0.07)]
                 ends = np.array([[*frame.at[slot], *tip] for tip in tips])
                 marks.strokes(ends, max(1.2, 0.03 * radius), outline_of(actor.look.colour))
+
+
+Floats = NDArray[np.float64]
+
+WORKING = ("coil", "muscle", "piston")
+CLOTH = "cloth"
+CRATES = ("wood", "stone", "brick")
+WINDOW = 0xBFE6FF
+# How far a panel stands out beyond its bars, and a window back from its corners [pixels at scale 1].
+PANEL_OUT, WINDOW_IN = 4.0, -3.0
+CRATE_LINE = 1.6
+# Lengths that differ by this part are the same.
+AS_LONG = 1e-3
+
+
+def _strangers(there: Mask, own: Slots) -> Slots:
+    """Slots that are there and belong to none of the level's things."""
+    left = there.copy()
+    left[own[own < len(left)]] = False
+    return np.flatnonzero(left)
+
+
+class KeptDrawables:
+    """What is drawn of states of a level; drawables: of the last one, as long as nothing breaks or joins."""
+
+    def __init__(self, level: Level) -> None:
+        self._own = self._level_slots = level_slots_of(level)
+        self._joined: tuple[Joined, ...] = ()
+        self._key: tuple[Mask, ...] = ()
+        self.drawables: Drawables | None = None
+
+    def slots_of(self, joined: tuple[Joined, ...]) -> LevelSlots:
+        """The slots of the level and of what has joined it."""
+        if joined is not self._joined:
+            # Bodies that were there go on as they are.
+            goes_on = joined[: len(self._joined)] == self._joined
+            present = self._level_slots if goes_on else self._own
+            self._level_slots = joined_slots(present, joined[len(self._joined) if goes_on else 0 :])
+            self._joined, self.drawables = joined, None
+        return self._level_slots
+
+    def of(self, state: Snapshot) -> Drawables:
+        """The drawables of a state."""
+        slots = self.slots_of(state.equipment.joined)
+        key = shown_particles(state), shown_springs(state), state.inverse_mass == 0.0
+        is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
+        if self.drawables is None or not is_same:
+            self.drawables, self._key = Drawables(slots, state, *key[:2], whole_triangles(state)), key
+        return self.drawables
+
+
+# How much of it is seen, 0..255.
+OPACITY = 84
+# Of lines and discs that would be thinner than this half width nothing would be seen [pixels].
+LEAST_HALF = 1.0
+
+
+class Shade:
+    """Draws states of one run of a level, one after the other."""
+
+    def __init__(self, level: Level) -> None:
+        self._things = KeptDrawables(level)
+        self._layer: pygame.Surface | None = None
+
+    def draw(
+        self, painter: Painter, state: Snapshot, camera: Camera, theme: Theme, tiles: Tiles, scale: float
+    ) -> None:  # fmt: skip
+        """Draw a state on the painter's surface; scale: pixels per layout unit."""
+        at = camera.project(state.position)
+        frame = Frame(state, at, state.angle, np.zeros(len(state.rest_length)), camera.zoom, scale, theme, tiles)
+        drawables = self._things.of(state)
+        drawables.soft.trace(painter, frame)
+        thrown, outlines = drawables.thrown(frame)
+        layer, size = self._layer, painter.surface.get_size()
+        if layer is None or layer.get_size() != size:
+            layer = self._layer = pygame.Surface(size, pygame.SRCALPHA)
+        layer.fill((0, 0, 0, 0))
+        colour = *theme.accent, 255
+        starts = outlines.start.tolist()
+        for first, last in pairwise(starts):
+            points = outlines.point[first:last]
+            if len(points) > 2 and (np.abs(points) < FAR).all():
+                pygame.draw.polygon(layer, colour, points.tolist())
+        for ax, ay, bx, by, half in thrown.lines[(np.abs(thrown.lines) < FAR).all(axis=1)].tolist():
+            pygame.draw.line(layer, colour, (ax, ay), (bx, by), round(2 * max(half, LEAST_HALF)))
+        for x, y, radius in thrown.discs[(np.abs(thrown.discs) < FAR).all(axis=1)].tolist():
+            pygame.draw.aacircle(layer, colour, (x, y), max(radius, LEAST_HALF))
+        layer.set_alpha(OPACITY)
+        painter.surface.blit(layer, (0, 0))

@@ -6,12 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.draw.raster.mark_kernels import DISC, GLOW, STROKE
+from sandbox.app.draw.colours import CHEEK, EYE, INK
+from sandbox.app.draw.raster.marks import DISC, GLOW, STROKE
 from sandbox.app.draw.raster.painter import MarkList
-from sandbox.app.draw.themes import CHEEK, EYE, INK
-from sandbox.app.draw.things.borders import starts_of
-from sandbox.app.draw.things.frame import Frame
-from sandbox.app.draw.things.level_slots import Actor, Piece
+from sandbox.app.draw.things.level_slots import Actor, Frame, Piece, starts_of
 from sandbox.physics.geometry.segment import distances_from_segments
 
 Slots = NDArray[np.int64]

@@ -24,7 +24,7 @@ from sandbox.app.draw.colours import (
     packed,
 )
 from sandbox.app.draw.lines import Canvas
-from sandbox.app.draw.material_colours import material_colours
+from sandbox.app.draw.looks import material_colours
 from sandbox.app.draw.renderer import (
     CROWDED,
     DENSITY,

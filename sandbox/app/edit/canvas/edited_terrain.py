@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.colours import BACKGROUND, TERRAIN, TERRAIN_FILL, Colour, mixed, packed
-from sandbox.app.draw.lines import Canvas
-from sandbox.app.draw.terrain import EDGE_WIDTH, fill_solid
+from sandbox.app.draw.lines import EDGE_WIDTH, Canvas, fill_solid
 from sandbox.editor.scene import Scene
 
 Mask = NDArray[np.bool_]

@@ -7,9 +7,8 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import BACKGROUND, TEXT, ZONE, Colour, mixed, packed, tone
+from sandbox.app.draw.colours import BACKGROUND, TEXT, ZONE, Colour, mixed, packed, tone, unpacked
 from sandbox.app.draw.lines import FARTHEST, Canvas
-from sandbox.app.draw.themes import rgb_of
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import ZoneDef
@@ -48,7 +47,7 @@ def paint_zones(canvas: Canvas, camera: Camera, areas: Areas, scale: float) -> N
 
 def _colour(zone: ZoneDef) -> Colour:
     if zone.look is not None and zone.look.colour is not None:
-        return rgb_of(colour_of(zone.look.colour))
+        return unpacked(colour_of(zone.look.colour))
     return WATER if zone.water is not None else ZONE
 
 

@@ -7,12 +7,11 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import Theme, theme_now
 from sandbox.app.draw.raster.painter import Painter
 from sandbox.app.draw.textures import Tiles
-from sandbox.app.draw.themes import Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
-from sandbox.app.draw.things.frame import Frame
-from sandbox.app.draw.things.level_slots import LevelSlots, level_slots_of
+from sandbox.app.draw.things.level_slots import Frame, LevelSlots, level_slots_of
 from sandbox.editor.scene import Scene
 
 Floats = NDArray[np.float64]

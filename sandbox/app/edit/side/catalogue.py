@@ -5,15 +5,15 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.loop import SliceQueue
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import hint, tip_of
-from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.contracts.application import Editing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.side.side_page import SidePage
-from sandbox.app.parts.part_card import PartCard, card_places, fill_card
+from sandbox.app.parts.part_page import PartCard, card_places, fill_card
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import TextBlock

@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.contracts.application import Editing
-from sandbox.app.draw.material_colours import material_colours
+from sandbox.app.draw.looks import material_colours
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.form import Form

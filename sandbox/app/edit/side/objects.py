@@ -9,7 +9,7 @@ import pygame
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import DISABLED, TEXT
-from sandbox.app.draw.material_colours import material_colours
+from sandbox.app.draw.looks import material_colours
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
 from sandbox.app.widgets.property_widgets import GAP, ROW

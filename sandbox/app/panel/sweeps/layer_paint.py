@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 import pygame
 
-from sandbox.app.base.coefficient_scale import CoefficientScale
+from sandbox.app.base.sag_map import CoefficientScale
 from sandbox.app.draw.colours import DECADE, MUTED, TEXT
 from sandbox.app.panel.sweeps.sweep_layer import BLOWN, SweepLayer
 from sandbox.app.widgets.widget import WindowLayout

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import platformdirs
 
-from sandbox.app.base.coefficient_scale import PLAIN
+from sandbox.app.base.sag_map import PLAIN
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
 from sandbox.app.panel.sweeps.sweep_measures import measure_of
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level

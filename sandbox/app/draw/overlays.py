@@ -1,17 +1,18 @@
-"""Overlays: particles, contact points, forces, velocities and stability, drawn over the things; they only read."""
+"""Overlays: particles, contacts, forces, velocities, stability, zones and strain, over the things; they only read."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import packed
+from sandbox.app.draw.colours import Colour, Theme, packed
 from sandbox.app.draw.raster.painter import MarkList
-from sandbox.app.draw.themes import Theme
-from sandbox.app.draw.things.frame import Frame, Seen
-from sandbox.level.document.model import Level
+from sandbox.app.draw.things.level_slots import Frame, Seen
+from sandbox.editor.zone_outline import outline_of as zone_outline
+from sandbox.level.document.model import Level, ZoneDef
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.analysis.energy import spring_forces
 from sandbox.physics.snapshot import Snapshot
@@ -247,3 +248,58 @@ def stability_tones(share: Floats, theme: Theme) -> NDArray[np.int64]:
     place = np.clip(np.nan_to_num(share, nan=9.0), 0.0, 1.0)
     red, green, blue = (np.interp(place, (0.0, 1.0), (rest[k], near[k])).astype(np.int64) for k in range(3))
     return np.where(share > 1.0, packed(theme.past), red << 16 | green << 8 | blue)
+
+
+# Sizes [pixels at scale 1]: half width of a dash and of what surrounds it, length of a dash and of the gap behind it.
+_ZONE_HALF, _ZONE_HALO, _DASH, _SPACE = 0.9, 1.2, 8.0, 5.0
+# Of an outline at most so many dashes, longer ones where it is long.
+_MOST_DASHES = 400
+
+
+def name_place(zone: ZoneDef) -> tuple[float, float]:
+    """Where the name of a zone stands [m]: at the middle of its top."""
+    corners = zone_outline(zone)
+    return float(corners[:, 0].min() + corners[:, 0].max()) / 2, float(corners[:, 1].max())
+
+
+def mark_zones(marks: MarkList, zones: Sequence[ZoneDef], camera: Camera, theme: Theme, scale: float) -> None:
+    """Draw the outlines of zones; scale: pixels per layout unit."""
+    dashes = [_dashes(camera.project(zone_outline(zone)), scale) for zone in zones]
+    if dashes:
+        ends = np.concatenate(dashes)
+        marks.strokes(ends, (_ZONE_HALF + _ZONE_HALO) * scale, packed(theme.card), 0.6)
+        marks.strokes(ends, _ZONE_HALF * scale, packed(theme.accent))
+
+
+def _dashes(corners: Floats, scale: float) -> Floats:
+    """Dashes (m, 4) [pixels] along the closed line through corners (k, 2) [pixels]."""
+    closed = np.concatenate([corners, corners[:1]])
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+    count = min(max(int(along[-1] / ((_DASH + _SPACE) * scale)), 4), _MOST_DASHES)
+    first = np.arange(count) * along[-1] / count
+    last = first + _DASH / (_DASH + _SPACE) * along[-1] / count
+    points = [np.interp(place, along, closed[:, axis]) for place in (first, last) for axis in range(2)]
+    return np.ascontiguousarray(np.stack(points, axis=1))
+
+
+# The colour goes with the logarithm of the strain: from this strain on it shows, at FULL_STRAIN it is at its end.
+# Larger: the load in stiff bodies stays grey.
+SLIGHT_STRAIN = 0.004
+FULL_STRAIN = 1.0
+
+# Where a theme's colours are at their end, on that scale.
+_FULL_PLACE = 0.62
+
+
+def strain_place(strain: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Places (m,) of signed strains on the scale, -1..1 up to FULL_STRAIN."""
+    finite = np.nan_to_num(strain, nan=0.0, posinf=1e9, neginf=-1e9)
+    place = np.sign(finite) * np.log1p(np.abs(finite) / SLIGHT_STRAIN) / np.log1p(FULL_STRAIN / SLIGHT_STRAIN)
+    return np.asarray(np.clip(place, -1.0, 1.0))
+
+
+def strain_tones(strain: NDArray[np.float64], colours: tuple[Colour, Colour, Colour]) -> NDArray[np.int64]:
+    """Colours (m,) of signed strains between those of a theme: squeezed, at rest, stretched."""
+    place, stops = strain_place(strain), (-_FULL_PLACE, 0.0, _FULL_PLACE)
+    red, green, blue = (np.interp(place, stops, [colour[k] for colour in colours]).astype(np.int64) for k in range(3))
+    return np.asarray(red << 16 | green << 8 | blue)

@@ -1,30 +1,34 @@
 """Game: the goal of a level while it is played: score, endings, checkpoints, the best run and its ghost."""
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
 import pygame
 
 from sandbox.app.base.shortcuts import shortcuts, spoken
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel
-from sandbox.app.draw.views.overlays import ZONES
-from sandbox.app.play.goals.result_card import Ending, ResultCard, star_times
-from sandbox.app.play.goals.score import chips_of
-from sandbox.app.play.goals.score_view import CHIP, TOP, ScoreView
-from sandbox.app.play.goals.zone_names import draw_zone_names
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.colours import Theme
+from sandbox.app.draw.overlays import ZONES, name_place
+from sandbox.app.play.score import CHIP, TOP, Ending, ResultCard, ScoreView, chips_of, star_times
 from sandbox.app.play.stage import Stage
-from sandbox.app.run.ghost_run import GhostRun
 from sandbox.app.run.playback import Playback
-from sandbox.app.sound.signals import STAR_RISE, STAR_STEP
+from sandbox.app.sound.waves import STAR_RISE, STAR_STEP
 from sandbox.app.widgets.dialogs import Choice
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.best_runs import Result, best_recording, best_result
 from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.level.document.model import ZoneDef
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.commands import CommandError
 from sandbox.session.outcome import Outcome, last_checkpoint, outcome
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.session import Session
 
 # How long the goal is shown at the start [s], and in how much of that it fades.
 GOAL_SECONDS, FADING = 6.0, 0.5
@@ -206,8 +210,8 @@ class Game:
         self._since, self._ended_at = 0.0, result.tick
         self._open_card(Ending(result, rate, None if before is None else before.seconds, is_best))
         self._app.sounds.signal("won" if result.is_won else "lost")
-        for number, time in enumerate(star_times(result.stars)):
-            self._app.sounds.signal("star", STAR_STEP + STAR_RISE * number, time)
+        for number, after in enumerate(star_times(result.stars)):
+            self._app.sounds.signal("star", STAR_STEP + STAR_RISE * number, after)
 
     def _toggle_zones(self) -> None:
         if self._playback.level.zones:
@@ -312,3 +316,56 @@ class Game:
 def _restart_key() -> str:
     """The keys that go back to a checkpoint, as a part of a sentence."""
     return spoken(next(entry.keys for entry in shortcuts("play") if entry.action == "reset"))
+
+
+# Wall time [s] that its ticks may take in a frame; where that is too little it is not seen until it has caught up.
+_GHOST_BUDGET = 0.006
+
+
+class GhostRun:
+    """Follows another run; state: how it stood at that tick, None while it is not there yet."""
+
+    def __init__(self, replay: Replay) -> None:
+        self._session = Session(replay.level, script=replay.script)
+        self._last = replay.ticks
+        self._is_broken = False
+        self.state: Snapshot | None = self._session.snapshot()
+
+    def follow(self, tick: int) -> None:
+        """Go to a tick, or as near as a frame has time for; beyond its end it stands as it ended."""
+        session, tick = self._session, min(tick, self._last)
+        if self._is_broken or (self.state is not None and self.state.tick == tick):
+            return
+        end = time.perf_counter() + _GHOST_BUDGET
+        with np.errstate(over="ignore", invalid="ignore"):
+            if tick <= session.last_tick and not session.tick <= tick <= session.tick + 1:
+                session.seek(tick)
+            try:
+                while session.tick < tick and time.perf_counter() < end:
+                    session.advance()
+            except CommandError:
+                self._is_broken = True
+        session.take_messages()
+        self.state = session.snapshot() if session.tick == tick and not self._is_broken else None
+
+
+# Sizes in layout units: of the text, of what surrounds it, and how far it is above its zone.
+_NAME_SIZE, _NAME_AROUND, _NAME_ABOVE = 12.0, 4.0, 3.0
+_NAME_OPACITY = 200
+
+
+def draw_zone_names(surface: pygame.Surface, ui: Ui, camera: Camera, zones: Sequence[ZoneDef], theme: Theme) -> None:
+    """Write the name of each zone where it begins to be above it, inside the view."""
+    font, view = ui.font(_NAME_SIZE, True), pygame.Rect(camera.viewport)
+    for zone in zones:
+        text = font.render(zone.id, True, theme.accent)
+        plate = pygame.Surface(
+            (text.width + 2 * ui.px(_NAME_AROUND), text.height + ui.px(_NAME_AROUND)), pygame.SRCALPHA
+        )
+        pygame.draw.rect(plate, (*theme.card, _NAME_OPACITY), plate.get_rect(), border_radius=ui.px(4))
+        plate.blit(text, text.get_rect(center=plate.get_rect().center))
+        x, y = camera.to_pixels(name_place(zone))
+        if not view.inflate(view.size).collidepoint(x, y):
+            continue
+        place = plate.get_rect(midbottom=(round(x), round(y) - ui.px(_NAME_ABOVE)))
+        surface.blit(plate, place.clamp(view) if place.colliderect(view) else place)

@@ -1,4 +1,4 @@
-"""Treads: chevrons that run along belts at the speed of these, by the time of the picture alone."""
+"""Belt marks: chevrons that run along belts at the speed of these, by the time of the picture alone."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import packed
+from sandbox.app.draw.colours import Theme, packed
 from sandbox.app.draw.raster.painter import MarkList
-from sandbox.app.draw.themes import Theme
 from sandbox.physics.marks import LINE, NO_EDGE, SOLID_RIGHT
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.terrain import Terrain
@@ -28,12 +27,12 @@ CHEVRON_COLOUR = 0xFFCF4D
 APART, MOST_PASSING = 20.0, 24.0
 # Nor are they nearer than this [m], however short their way is.
 LEAST_APART = 1e-3
-# So far beside a view [pixels] nothing of a tread reaches into it.
+# So far beside a view [pixels] nothing of a belt reaches into it.
 BESIDE = 40.0
 
 
 @dataclass(frozen=True, eq=False)
-class Tread:
+class BeltSide:
     """A side of a belt as a way from edge to edge: ends (k, 2), vertices of terrain or slots of particles.
 
     springs (k,): those of the edges, -1: terrain; arc (k + 1,) [m]: where edges begin along the way, at rest; speed
@@ -66,7 +65,7 @@ class Tread:
         return edge, (first + apart * number - self.arc[edge]) / rest[edge]
 
 
-def ground_treads(terrain: Terrain) -> list[Tread]:
+def ground_belts(terrain: Terrain) -> list[BeltSide]:
     """The belts of terrain."""
     made = []
     for chain in np.unique(terrain.chain[terrain.belt != 0.0]).tolist():
@@ -79,7 +78,7 @@ def ground_treads(terrain: Terrain) -> list[Tread]:
     return made
 
 
-def body_treads(state: Snapshot) -> list[Tread]:
+def body_belts(state: Snapshot) -> list[BeltSide]:
     """The belts of bodies' edges, each as long as edges of one speed follow one another."""
     made = []
     running = np.flatnonzero((state.belt != 0.0) & (state.edge != NO_EDGE))
@@ -98,11 +97,11 @@ def body_treads(state: Snapshot) -> list[Tread]:
 
 def _sides(
     ends: Slots, springs: Slots, lengths: Floats, belt: float, two_sided: bool, radius: float
-) -> list[Tread]:  # fmt: skip
+) -> list[BeltSide]:  # fmt: skip
     # Who stands on the left side looks along the way to the right; on what is solid they stand on the right side.
     arc, closed = np.concatenate([[0.0], np.cumsum(lengths)]), bool(ends[0, 0] == ends[-1, 1])
     sides = ((1, belt), (-1, -belt)) if two_sided else ((0, -belt),)
-    return [Tread(ends, springs, arc, speed, closed, side, radius) for side, speed in sides]
+    return [BeltSide(ends, springs, arc, speed, closed, side, radius) for side, speed in sides]
 
 
 def _ways(ends: Sequence[Sequence[int]]) -> Iterable[list[int]]:
@@ -122,6 +121,36 @@ def _ways(ends: Sequence[Sequence[int]]) -> Iterable[list[int]]:
             yield way
 
 
+def mark_belts(
+    layer: MarkList, belts: Sequence[BeltSide], at: Floats, active: NDArray[np.bool_], camera: Camera, scale: float,
+    seconds: float, theme: Theme,
+) -> None:  # fmt: skip
+    """Mark belts whose ends are at (n, 2) [pixels]; active (m,): which springs are there."""
+    for belt in belts:
+        begin, way = at[belt.ends[:, 0]], at[belt.ends[:, 1]] - at[belt.ends[:, 0]]
+        length = np.sqrt(np.sum(way * way, axis=1))[:, None]
+        along = way / np.maximum(length, 1e-9)
+        # Pixels count downwards.
+        left = np.stack([along[:, 1], -along[:, 0]], axis=1)
+        size = scale * (SIDE if belt.side else 1.0)
+        inset = belt.side * STRAP_HALF * size if belt.side else STRAP_HALF * size - belt.radius * camera.zoom
+        begin = begin + inset * left
+        seen = _seen(begin, way, camera.viewport)
+        seen[[spring >= 0 and not active[spring] for spring in belt.springs.tolist()]] = 0.0
+        drawn = seen[:, 1] > seen[:, 0]
+        # Round at its ends, a strap goes to the corners of what is solid and no farther.
+        trim = np.minimum(max(0.0, inset), 0.5 * length) * (0.0 if belt.side else 1.0) / np.maximum(length, 1e-9)
+        shares = np.clip(seen, trim, 1.0 - trim)[drawn]
+        strap = [begin[drawn] + shares[:, k, None] * way[drawn] for k in range(2)]
+        layer.strokes(np.concatenate(strap, axis=1), STRAP_HALF * size, packed(theme.tyre))
+        edge, share = belt.chevrons(camera.zoom, scale, seconds, seen)
+        ahead = math.copysign(CHEVRON * size, belt.speed) * along[edge]
+        tip = begin[edge] + share[:, None] * way[edge] + 0.5 * ahead
+        for across in (-CHEVRON * size, CHEVRON * size):
+            ends = np.concatenate([tip - ahead + across * left[edge], tip], axis=1)
+            layer.strokes(ends, CHEVRON_HALF * scale, CHEVRON_COLOUR)
+
+
 def _seen(begin: Floats, way: Floats, view: tuple[int, int, int, int]) -> Floats:
     """The shares (k, 2) from which to which edges lie in a view, or close by; the same twice of what does not."""
     low, high = np.zeros(len(begin)), np.ones(len(begin))
@@ -132,33 +161,3 @@ def _seen(begin: Floats, way: Floats, view: tuple[int, int, int, int]) -> Floats
     # What is nowhere is not seen.
     shares = np.stack([low, high], axis=1)
     return np.where((low < high)[:, None] & np.isfinite(shares), shares, 0.0)
-
-
-def mark_treads(
-    layer: MarkList, treads: Sequence[Tread], at: Floats, active: NDArray[np.bool_], camera: Camera, scale: float,
-    seconds: float, theme: Theme,
-) -> None:  # fmt: skip
-    """Mark belts whose ends are at (n, 2) [pixels]; active (m,): which springs are there."""
-    for tread in treads:
-        begin, way = at[tread.ends[:, 0]], at[tread.ends[:, 1]] - at[tread.ends[:, 0]]
-        length = np.sqrt(np.sum(way * way, axis=1))[:, None]
-        along = way / np.maximum(length, 1e-9)
-        # Pixels count downwards.
-        left = np.stack([along[:, 1], -along[:, 0]], axis=1)
-        size = scale * (SIDE if tread.side else 1.0)
-        inset = tread.side * STRAP_HALF * size if tread.side else STRAP_HALF * size - tread.radius * camera.zoom
-        begin = begin + inset * left
-        seen = _seen(begin, way, camera.viewport)
-        seen[[spring >= 0 and not active[spring] for spring in tread.springs.tolist()]] = 0.0
-        drawn = seen[:, 1] > seen[:, 0]
-        # Round at its ends, a strap goes to the corners of what is solid and no farther.
-        trim = np.minimum(max(0.0, inset), 0.5 * length) * (0.0 if tread.side else 1.0) / np.maximum(length, 1e-9)
-        shares = np.clip(seen, trim, 1.0 - trim)[drawn]
-        strap = [begin[drawn] + shares[:, k, None] * way[drawn] for k in range(2)]
-        layer.strokes(np.concatenate(strap, axis=1), STRAP_HALF * size, packed(theme.tyre))
-        edge, share = tread.chevrons(camera.zoom, scale, seconds, seen)
-        ahead = math.copysign(CHEVRON * size, tread.speed) * along[edge]
-        tip = begin[edge] + share[:, None] * way[edge] + 0.5 * ahead
-        for across in (-CHEVRON * size, CHEVRON * size):
-            ends = np.concatenate([tip - ahead + across * left[edge], tip], axis=1)
-            layer.strokes(ends, CHEVRON_HALF * scale, CHEVRON_COLOUR)
