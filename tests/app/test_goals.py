@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pygame
 import pytest
-from sandbox.app.play.score import Chip, chips_of, time_text
 
+from sandbox.app.play.score import Chip, chips_of, time_text
 from sandbox.editor.storage.best_runs import best_recording, best_result
 from sandbox.editor.storage.preferences import remember
 from sandbox.level.reading.files import parse_level

@@ -18,7 +18,7 @@ from sandbox.level.plan.surfaces import terrain_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.replay.reader import read_in_slices
 from sandbox.session.replay.recording import Replay, ReplayError
-from sandbox.session.replay.scene_file import SUFFIX, read_about, read_scene
+from sandbox.session.scene import SUFFIX, read_about, read_scene
 
 # What the place is called that New begins with.
 NEW_PLACE = "New place"

@@ -20,7 +20,7 @@ from sandbox.app.widgets.widget import Widget
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands.records import script_of
-from sandbox.session.link.scene_link import run_of
+from sandbox.session.replay.link import run_of
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 

@@ -17,8 +17,8 @@ from sandbox.physics.step import step
 from sandbox.session.actions import RuleActions
 from sandbox.session.commands import CommandError, Redo, Undo, apply
 from sandbox.session.commands.records import ScriptLine, from_record, script_of
-from sandbox.session.link.scene_link import fragment_of, level_record
 from sandbox.session.replay.format import TICK_DIGITS
+from sandbox.session.replay.link import fragment_of, level_record
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 

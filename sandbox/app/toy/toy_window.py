@@ -9,8 +9,7 @@ import pygame
 from filelock import FileLock, Timeout
 
 from sandbox.app.base.display import Display
-from sandbox.editor.storage.data_folder import data_folder
-from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.editor.storage.preferences import data_folder, preference, set_preference
 
 # Its sides, or those of the square of its area; how much longer than high it is at most, or the other way round; and
 # how far it begins from the corner of the desktop [layout units].
