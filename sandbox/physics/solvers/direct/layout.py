@@ -173,56 +173,27 @@ def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, 
     places = places_of(state, counts, bodies, tuned.whole[WIDEST_NARROW], chosen, lying, arena)
     set_field(out, "fronts", fronts)
     set_field(out, "matrix", matrix)
-    set_field(
-        out,
-        "bodies",
-        new_tuple(
-            Bodies,
-            arena,
-            row_start=places.row_start,
-            spring_start=places.spring_start,
-            constraint_start=places.constraint_start,
-            lowest=places.lowest,
-            pivot=places.pivot,
-            anchored=places.anchored,
-            bodies=places.lowest.shape[0],
-        ),
-    )
-    set_field(out, "rows", new_tuple(Rows, arena, particle=places.particle, rows=places.particle.shape[0]))
-    set_field(
-        out,
-        "springs",
-        new_tuple(
-            Springs,
-            arena,
-            slot=places.spring,
-            row_a=places.row_a,
-            row_b=places.row_b,
-            block=places.spring_block,
-            springs=places.spring.shape[0],
-        ),
-    )
-    # Ready for a step; most_wide: how many wide ones a body has at most.
+    # All that follows is ready for a step; of wide constraints a body has most_wide at most.
+    blocks_of_rows = new_tuple(
+        Bodies, arena, row_start=places.row_start, spring_start=places.spring_start,
+        constraint_start=places.constraint_start, lowest=places.lowest, pivot=places.pivot, anchored=places.anchored,
+        bodies=places.lowest.shape[0],
+    )  # fmt: skip
+    rows = new_tuple(Rows, arena, particle=places.particle, rows=places.particle.shape[0])
+    springs = new_tuple(
+        Springs, arena, slot=places.spring, row_a=places.row_a, row_b=places.row_b, block=places.spring_block,
+        springs=places.spring.shape[0],
+    )  # fmt: skip
     most_wide = counts[MOST_WIDE]
-    set_field(
-        out,
-        "constraints",
-        new_tuple(
-            Constraints,
-            arena,
-            slot=places.constraint,
-            kind=places.kind,
-            first=places.first,
-            row=places.row,
-            corner=places.corner,
-            block=places.block,
-            wide=places.wide,
-            constraints=places.constraint.shape[0],
-            corners=places.row.shape[0],
-            most_wide=most_wide,
-            answered=nodes if most_wide > 0 else 0,
-        ),
-    )
+    constraints = new_tuple(
+        Constraints, arena, slot=places.constraint, kind=places.kind, first=places.first, row=places.row,
+        corner=places.corner, block=places.block, wide=places.wide, constraints=places.constraint.shape[0],
+        corners=places.row.shape[0], most_wide=most_wide, answered=nodes if most_wide > 0 else 0,
+    )  # fmt: skip
+    set_field(out, "bodies", blocks_of_rows)
+    set_field(out, "rows", rows)
+    set_field(out, "springs", springs)
+    set_field(out, "constraints", constraints)
     if not is_full(arena):
         lay_out_groups(state, places.constraint_start, arena, out)
 
