@@ -516,7 +516,7 @@ def test_a_session_its_world_and_a_snapshot_say_what_they_are_in_a_line(tmp_path
     assert repr(session) == "<Session of 'A rope' at tick 0: 0 gestures>".replace("A rope", session.level.name)
     session.submit(hand)
     session.advance()
-    assert repr(session.world) == f"<World at tick 1: {sizes}>"
+    assert repr(session.world) == f"<LevelWorld at tick 1: {sizes}>"
     assert repr(session.snapshot()) == f"<Snapshot at tick 1: {sizes}>"
     session.seek(0)
     assert "at tick 0 of 1: 1 gesture>" in repr(session)
