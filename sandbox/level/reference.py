@@ -1,23 +1,28 @@
-"""format_reference(): the reference of the level format for level makers, generated from the models.
+"""format_reference(): the reference of the level format for level makers, generated from `reference.md` and the models.
 
 `python -m sandbox.level.reference > docs/level-format.md` renews it.
 """
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
-from sandbox.level import reference_prose as prose
+from sandbox.level.checks import STILL
 from sandbox.level.document.model import MaterialDef
 from sandbox.level.document.schema import TITLES, definitions
 from sandbox.level.format import limits
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import Description
+from sandbox.level.hints import CONTROLS, KEY
 from sandbox.level.kinds.bodies import EXPANSIONS
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.reading.parse import parse_level
+from sandbox.level.rules.hands import MEANINGS
 
+# Prose of the page.
+TEMPLATE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 # Each is one mistake in the example of the page, which shows what the program says to it.
 _MISTAKES = [
     ('"stiffness": 1.0', '"stiffness": 1.3'),
@@ -42,11 +47,43 @@ Model = dict[str, Any]
 
 
 def format_reference() -> str:
-    """The reference as Markdown."""
+    """The reference as Markdown: the template, in which tables, lists and numbers stand for their names.
+
+    `{{### Title}}` is the table of the model with that title.
+    """
     whole = definitions()
-    body = "\n".join(_sections(_models(whole), whole))
-    contents = "\n".join(_contents(body))
-    return f"# Level format, version {limits.VERSION}\n\n{prose.INTRO}\n## Contents\n\n{contents}\n\n{body}"
+    models = _models(whole)
+    words = {name: _number(value) for name, value in vars(limits).items() if isinstance(value, int | float)}
+    words |= {
+        "FILE_LIMIT": str(limits.FILE_LIMIT // 1024 // 1024),
+        "still": f"{STILL:g}",
+        "plurals": ", ".join(each.plural for each in EXPANSIONS.values()),
+        "kinds": "\n\n".join(
+            _table(f"### {name.capitalize()}", models, whole)
+            for kind, each in EXPANSIONS.items()
+            for name in (kind, *each.alternatives)
+        ),
+        "generation": "\n".join(each.generation for each in EXPANSIONS.values() if each.generation),
+        "controls": "\n".join(
+            f"| `{{{name}}}` | {each.does} | "
+            f"{' | '.join((word or '–').replace(KEY, 'its key') for word in each[-3:])} |"
+            for name, each in CONTROLS.items()
+        ),
+        "hands": "\n".join(
+            f"| `{deed}` | {', '.join(f'`{kind}`' for kind in meaning.commands)} |"
+            for deed, meaning in MEANINGS.items()
+        ),
+        "mistakes": "\n".join(_mistakes()),
+        "index": _index(models),
+        "contents": "{{contents}}",
+    }
+    text = re.sub(r"\{\{(.+?)\}\}", lambda found: words.get(found[1]) or _table(found[1], models, whole), TEMPLATE)
+    return text.replace("{{contents}}", "\n".join(_contents(text.partition("{{contents}}")[2])))
+
+
+def examples() -> list[str]:
+    """The levels that the page has as examples."""
+    return [text for text in re.findall(r"```json\n(.*?)```", TEMPLATE, re.DOTALL) if '"format"' in text]
 
 
 def _models(whole: Model) -> dict[str, Model]:
@@ -74,41 +111,11 @@ def _is_shared(field: Field, name: str, shared: dict[str, Field]) -> bool:
     return name in shared and (name == "type" or field == shared[name])
 
 
-def _sections(models: dict[str, Model], whole: Model) -> Iterator[str]:
-    """The sections of the page, in its order."""
-
-    def table(title: str, level: int = 3) -> str:
-        return _table(title, models[title], whole, level)
-
-    yield from (prose.A_FILE, prose.TABLES, table("Level", 2), prose.HINTS, table("Settings", 2), "## Materials\n")
-    yield from map(table, ("Every material", "Material", "Hooke material"))
-    yield "## Contacts, walls and terrain\n"
-    yield from map(table, ("Contacts", "Walls", "Terrain"))
-    yield "## Zones and water\n"
-    yield from (*map(table, ("Zone", "Water")), prose.WATER)
-    yield from (prose.BODIES, table("Every body"))
-    yield from (table(name.capitalize()) for kind, each in EXPANSIONS.items() for name in (kind, *each.alternatives))
-    yield from map(table, ("Firmness", "Bending"))
-    yield "## Loose particles and springs\n"
-    yield from map(table, ("Loose particle", "Loose spring"))
-    yield "## Actuators\n"
-    yield from (*map(table, ("Muscle", "Hydraulic", "Motor")), prose.ACTUATORS)
-    yield from (
-        prose.RULES,
-        *map(table, ("Rule", "Question", "Action", "Stars", "Counter")),
-        prose.HANDS,
-        *map(table, ("Hands", "Budget")),
-    )
-    yield from (prose.CHECKS, table("Acceptance check"), table("Key that is held"), prose.METRICS)
-    yield from (prose.LOOKS, *map(table, ("Level look", "Body look", "Particle look", "Zone look")))
-    yield from (prose.NAMES, prose.COLLISIONS, prose.AREAS, prose.FIRMNESS, prose.LIMITS, _faults(), _index(models))
-
-
-def _table(title: str, model: Model, whole: Model, level: int) -> str:
+def _table(heading: str, models: dict[str, Model], whole: Model) -> str:
+    model = models[heading.lstrip("# ")]
     required = model.get("required", [])
     rows = [_row(name, field, name in required, whole) for name, field in model["properties"].items()]
-    parts = [f"{'#' * level} {title}\n", f"{model['description']}\n", _HEAD, *rows, ""]
-    return "\n".join(parts)
+    return "\n".join([f"{heading}\n", f"{model['description']}\n", _HEAD, *rows])
 
 
 def _row(name: str, field: Field, is_required: bool, whole: Model) -> str:
@@ -226,14 +233,13 @@ def _contents(text: str) -> Iterator[str]:
     return iter(lines)
 
 
-def _faults() -> str:
-    lines = [prose.FAULTS]
+def _mistakes() -> Iterator[str]:
+    example = examples()[0]
     for right, wrong in _MISTAKES:
         try:
-            parse_level(prose.EXAMPLE.replace(right, wrong, 1).encode(), "levels/x.json")
+            parse_level(example.replace(right, wrong, 1).encode(), "levels/x.json")
         except LevelError as error:
-            lines += [f"- `{wrong}`", "", "  ```text", *(f"  {fault}" for fault in error.faults), "  ```"]
-    return "\n".join([*lines, ""])
+            yield from (f"- `{wrong}`", "", "  ```text", *(f"  {fault}" for fault in error.faults), "  ```")
 
 
 def _index(models: dict[str, Model]) -> str:
@@ -242,12 +248,7 @@ def _index(models: dict[str, Model]) -> str:
     for title, model in models.items():
         for name in model["properties"]:
             tables.setdefault(name, []).append(title)
-    lines = [f"- `{name}`: {_links(titles)}" for name, titles in sorted(tables.items())]
-    return "\n".join(["## Every field, by name\n", *lines, ""])
-
-
-def _links(titles: Iterable[str]) -> str:
-    return ", ".join(map(_link, titles))
+    return "\n".join(f"- `{name}`: {', '.join(map(_link, titles))}" for name, titles in sorted(tables.items()))
 
 
 if __name__ == "__main__":
