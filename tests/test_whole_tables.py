@@ -14,6 +14,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from sandbox.level.rules.player_limits import DEEDS
 
 import sandbox
 from sandbox.app.draw import scene, textures
@@ -35,9 +36,7 @@ from sandbox.level.format.look import BALLS, GROUNDS, LINES, SKINS
 from sandbox.level.kinds.bodies import KINDS as BODY_KINDS
 from sandbox.level.kinds.jelly import SHAPES
 from sandbox.level.plan import rules
-from sandbox.level.rules.action import DOES, Sound
-from sandbox.level.rules.hands import DEEDS
-from sandbox.level.rules.question import ASKS, GROUPS, UNASKED
+from sandbox.level.rules.rule import ASKS, DOES, GROUPS, UNASKED, Sound
 from sandbox.page import start
 from sandbox.page.bundle import WEB
 from sandbox.physics import constraints, marks, settings

@@ -30,9 +30,8 @@ from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.level.kinds.fitting import fitting_spacing
+from sandbox.level.kinds.geometry import fitting_spacing, is_simple, loops_touch
 from sandbox.level.kinds.jelly import JellyDef, PolygonShape
-from sandbox.level.kinds.polygon import is_simple, loops_touch
 from sandbox.physics.meshing.loops import ROW
 
 if TYPE_CHECKING:

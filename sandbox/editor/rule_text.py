@@ -3,9 +3,7 @@
 from typing import assert_never
 
 from sandbox.level.checks import METRICS, Metric
-from sandbox.level.rules.action import ActionDef
-from sandbox.level.rules.question import QuestionDef
-from sandbox.level.rules.rule import RuleDef
+from sandbox.level.rules.rule import ActionDef, QuestionDef, RuleDef
 
 
 def rule_text(rule: RuleDef) -> str:

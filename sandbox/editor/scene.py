@@ -17,10 +17,8 @@ from sandbox.level.format.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.geometry import distances
-from sandbox.level.plan.layout import Layout
-from sandbox.level.plan.plan import Plan, kept_plan
+from sandbox.level.plan.plan import Layout, Plan, kept_plan, united
 from sandbox.level.plan.surfaces import surfaces_of
-from sandbox.level.plan.welds import united
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

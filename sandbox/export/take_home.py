@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from sandbox.export.engines import ChosenBody, EngineNumbers, choose_body, engine_numbers
 from sandbox.export.loops import LISTINGS, LoopPair, LoopRow, LoopTrial, expected, listing, loop_rows, loop_trial
 from sandbox.export.numbers import percent, short
-from sandbox.level.assembly.build_world import build_world
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.softness.body_motion import read_body, word_for

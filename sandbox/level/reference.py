@@ -19,7 +19,7 @@ from sandbox.level.hints import CONTROLS, KEY
 from sandbox.level.kinds.bodies import EXPANSIONS
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.reading.parse import parse_level
-from sandbox.level.rules.hands import MEANINGS
+from sandbox.level.rules.player_limits import MEANINGS
 
 # Prose of the page.
 TEMPLATE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")

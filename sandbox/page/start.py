@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import ContactsDef
 from sandbox.level.format.limits import (
     LIMITED_LIMIT,
@@ -22,8 +22,8 @@ from sandbox.level.format.limits import (
     SPRING_LIMIT,
 )
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
-from sandbox.level.rules.action import ActionDef
-from sandbox.level.rules.hands import words_of
+from sandbox.level.rules.player_limits import words_of
+from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.commands import command, command_table
 from sandbox.physics.constraints import AREA

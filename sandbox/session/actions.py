@@ -8,9 +8,9 @@ from typing import Any, assert_never
 
 import numpy as np
 
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
-from sandbox.level.rules.action import ActionDef
+from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.commands.command import RULE
 from sandbox.physics.softness.kernels.reach import BY_SAG
 from sandbox.session.commands import CommandError, act

@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from sandbox.level.document.model import Level
-from sandbox.level.rules.action import ActionDef, StarsDef
+from sandbox.level.rules.rule import ActionDef, StarsDef
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
 

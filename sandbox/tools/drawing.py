@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from sandbox.level.format.quantities import significant
-from sandbox.level.kinds.polygon import drawn_outline, rows_of
+from sandbox.level.kinds.geometry import drawn_outline, rows_of
 from sandbox.physics.arena import answer_of
 from sandbox.physics.meshing import fitting
 from sandbox.physics.snapshot import Snapshot

@@ -12,8 +12,7 @@ import time
 
 import numpy as np
 
-from sandbox.level.kinds.fitting import TooCoarse, fitted_mesh
-from sandbox.level.kinds.polygon import is_simple
+from sandbox.level.kinds.geometry import TooCoarse, fitted_mesh, is_simple
 
 CORNERS = (3, 4, 5, 8, 12, 20, 60)
 ROUGH = (0.0, 0.1, 0.3, 0.5)

@@ -4,10 +4,10 @@ import math
 
 import pygame
 import pytest
+from sandbox.level.rules.player_limits import PlayerLimits
 
 from sandbox.app.play.toolbar import NAMES, refused_tools
 from sandbox.level.format.quantities import replaced
-from sandbox.level.rules.hands import HandsDef
 from sandbox.physics.meshing.fitting import CROSSES
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, CutSprings, Pin, Remove, ScaleMass, SetFirmness
@@ -144,7 +144,7 @@ def test_a_finger_that_rests_on_a_thing_opens_its_menu_and_one_that_moves_drags_
 
 
 def test_where_hands_may_not_add_the_tools_are_grey_and_the_menu_says_why(open_app):
-    level = replaced(furnished(), hands=HandsDef(may=("grab", "firmness")))
+    level = replaced(furnished(), hands=PlayerLimits(may=("grab", "firmness")))
     assert refused_tools(level) >= {*MAKING, "delete"}
     player = open_app(level)
     player.key(pygame.K_b)

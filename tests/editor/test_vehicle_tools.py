@@ -17,7 +17,7 @@ from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import TerrainDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.plan.axles import mount_of
+from sandbox.level.plan.surfaces import mount_of
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.step import step
 

@@ -9,7 +9,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import COLLISION_GROUP_LIMIT
-from sandbox.level.plan.axles import mount_of
+from sandbox.level.plan.surfaces import mount_of
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.step import step
 

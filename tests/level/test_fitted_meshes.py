@@ -13,9 +13,8 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.kinds.fitting import TooCoarse, disc_counts, fitted_mesh
+from sandbox.level.kinds.geometry import TooCoarse, disc_counts, fitted_mesh, is_simple
 from sandbox.level.kinds.jelly import JellyDef
-from sandbox.level.kinds.polygon import is_simple
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.marks import NO_EDGE
 from sandbox.physics.step import step

@@ -10,7 +10,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.kinds.polygon import polygon_grid
+from sandbox.level.kinds.geometry import polygon_grid
 from sandbox.level.plan.plan import kept_plan
 from sandbox.level.reading.files import parse_level
 from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE, LAW_NISSEN

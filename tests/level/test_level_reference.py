@@ -12,8 +12,7 @@ from sandbox.level.document.schema import SCHEMA_ID, TITLES, schema, schema_text
 from sandbox.level.format.look import BALLS, GROUNDS, LINES, PALETTE, SKINS
 from sandbox.level.kinds.bodies import KINDS
 from sandbox.level.reading.files import parse_level
-from sandbox.level.reference import format_reference
-from sandbox.level.reference_prose import EXAMPLE
+from sandbox.level.reference import examples, format_reference
 from sandbox.physics.snapshot import state_hash
 from tests.support.malformed_levels import GOOD, encoded
 
@@ -31,7 +30,7 @@ def test_the_reference_is_what_the_schema_says():
 
 
 def test_the_reference_s_example_is_a_level():
-    assert parse_level(EXAMPLE.encode(), "example").bodies[0].id == "deck"
+    assert parse_level(examples()[0].encode(), "example").bodies[0].id == "deck"
 
 
 def tables():

@@ -8,7 +8,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.limits import VERSION
 from sandbox.level.reading.files import LevelError, parse_level, shipped_levels
-from sandbox.level.reading.migrate import MIGRATIONS, migrated
+from sandbox.level.reading.parse import MIGRATIONS, migrated
 from sandbox.level.reading.salvage import salvage
 from sandbox.physics.equation import half_step
 from sandbox.physics.snapshot import state_hash

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.level.kinds.polygon import grid_bounds, is_simple, largest_part, polygon_grid, simplified
+from sandbox.level.kinds.geometry import grid_bounds, is_simple, largest_part, polygon_grid, simplified
 
 eighths = st.integers(-40, 40)
 corners = st.lists(st.tuples(eighths, eighths), min_size=3, max_size=7)

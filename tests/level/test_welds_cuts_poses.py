@@ -9,7 +9,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.quantities import replaced
-from sandbox.level.plan.welds import united
+from sandbox.level.plan.plan import united
 from sandbox.level.reading.files import LevelError, parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step

@@ -9,7 +9,7 @@ from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.reading.salvage import salvage
-from sandbox.level.reference_prose import WATER_EXAMPLE
+from sandbox.level.reference import examples
 from sandbox.physics.step import step
 
 POOL = {"id": "pool", "box": [-5, -2, 5, 0]}
@@ -98,7 +98,7 @@ def test_a_zone_alone_makes_nothing_touch():
 
 
 def test_the_reference_s_example_of_water_is_a_level_whose_raft_floats_as_deep_as_it_says():
-    level = parse_level(WATER_EXAMPLE.encode(), "example")
+    level = parse_level(examples()[1].encode(), "example")
     world = build_world(level)
     for _ in range(900):
         step(world)

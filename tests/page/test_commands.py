@@ -11,13 +11,13 @@ from contextlib import suppress
 from typing import Any
 
 import pytest
+from sandbox.level.rules.player_limits import PlayerLimits
 
 from sandbox import load_level
 from sandbox.commands import COMMAND_TYPES, CommandError, apply, from_record
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import read_level, shipped_levels
-from sandbox.level.rules.hands import HandsDef
 from sandbox.level.rules.rule import RuleDef
 from sandbox.page.start import is_done_by_pages
 from sandbox.physics.commands.command_table import KINDS
@@ -296,7 +296,7 @@ def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tm
 def test_a_page_refuses_what_the_level_does_not_let_hands_do(hands, tmp_path):
     def limited():
         level = world_of().level
-        return build_world(replaced(level, hands=HandsDef.model_validate_json(json.dumps(hands))))
+        return build_world(replaced(level, hands=PlayerLimits.model_validate_json(json.dumps(hands))))
 
     world = limited()
     # Before, of all that counts something is done, where it may be.
@@ -323,7 +323,9 @@ def test_page_and_desktop_answer_500_random_deeds_of_hands_in_the_same_words(nam
     def limited():
         level = read_level(next(path for path in shipped_levels() if path.stem == name))
         hands = MORE_LIMITED.get(name)
-        return build_world(replaced(level, hands=HandsDef.model_validate_json(json.dumps(hands))) if hands else level)
+        return build_world(
+            replaced(level, hands=PlayerLimits.model_validate_json(json.dumps(hands))) if hands else level
+        )
 
     world, chance = limited(), random.Random(name)
     kinds = [kind for kind in GOOD if kind != "hold_key"]

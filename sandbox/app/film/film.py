@@ -14,7 +14,7 @@ from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.film.kinds import Size
 from sandbox.app.run.followers import StabilityPaint
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands.records import script_of
 from sandbox.session.session import Session

@@ -17,7 +17,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
 from sandbox.export.engines import NoSuchBody, body_names
 from sandbox.export.take_home import TakeHome, as_text, pasted, take_home
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 
 # Sizes in layout units, and how far what does not fit into a line is moved in on the next [letters].
 CODE_SIZE, INSET, MOVED_IN, TAB = 12.0, 12.0, 4, 4

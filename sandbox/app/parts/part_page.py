@@ -31,8 +31,8 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import ENTER_KEYS, Widget
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands
-from sandbox.editor.storage.part_files import PartFile, catalogue
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.editor.storage.level_file import PartFile, catalogue
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import read_bytes

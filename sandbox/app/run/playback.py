@@ -12,7 +12,7 @@ import numpy as np
 from sandbox.app.base.loop import TickClock
 from sandbox.app.run.followers import Activity, Breaks, Fired, Stopped
 from sandbox.app.run.travel import Travel
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot

@@ -19,16 +19,15 @@ from sandbox.app.sound.sound_events import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands
-from sandbox.editor.storage.part_files import catalogue
-from sandbox.level.assembly.build_world import build_world
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.editor.storage.level_file import catalogue
+from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import ContactsDef, Level, Settings
 from sandbox.level.format.limits import DEFAULT_MATERIAL, GRAVITY_LIMIT
 from sandbox.level.format.quantities import significant
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.reading.parse import parse_level
-from sandbox.level.rules.hands import left_of
+from sandbox.level.rules.player_limits import left_of
 from sandbox.level.rules.rule import has_clock
 from sandbox.page.page import page_text, toy_content
 from sandbox.page.start import adding, start_of

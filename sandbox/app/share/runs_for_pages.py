@@ -5,10 +5,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from sandbox.app.draw.scene import joined_scene
-from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.assembly.joining import Joiners
 from sandbox.level.assembly.kit_files import written
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.plan.actuators import driving_keys

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.looks import GRAINS, STRANDS, Look, ball_look, body_looks
 from sandbox.app.draw.things.level_slots import level_slots_of
 from sandbox.app.sound.waves import STUFFS, Note, note
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Floats, Slots

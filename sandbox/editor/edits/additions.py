@@ -19,7 +19,7 @@ from sandbox.level.format.quantities import significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BendingDef, FirmnessDef
 from sandbox.level.kinds.wheel import WheelDef
-from sandbox.level.plan.axles import mount_of
+from sandbox.level.plan.surfaces import mount_of
 
 # A new muscle swings by this share of its length, once in this many ticks: a second, at 60 ticks in one.
 MUSCLE = MuscleDef(amplitude=0.2, period=60)

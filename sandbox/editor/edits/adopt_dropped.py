@@ -9,7 +9,7 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.bake import as_firm, heavier, times_as_heavy
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, taken_ids
 from sandbox.editor.scene import make_scene
-from sandbox.level.assembly.level_world import JoinedLevel, LevelWorld
+from sandbox.level.assembly.build_world import JoinedLevel, LevelWorld
 from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.look import look_when_added

@@ -27,7 +27,7 @@ from sandbox.level.format.limits import VERSION
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import BodyDef
-from sandbox.level.rules.question import WALLS
+from sandbox.level.rules.rule import WALLS
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
 _FORMLESS = frozenset(BodyDef.model_fields).union(*(each.formless for each in EDITING.values()))

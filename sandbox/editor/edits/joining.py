@@ -11,8 +11,8 @@ from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses,
 from sandbox.editor.edits.copying import fragment, inserted, shifted
 from sandbox.editor.edits.names import owner_of, rewired, with_owner
 from sandbox.editor.items import items_of
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.assembly.joining import Joiners
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level, Material, ParticleDef
 from sandbox.level.format.level_error import LevelError, one_line, shown
 from sandbox.level.format.look import BodyLook

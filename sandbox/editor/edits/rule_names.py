@@ -5,9 +5,7 @@ from typing import Any
 
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
-from sandbox.level.rules.action import ActionDef
-from sandbox.level.rules.question import QuestionDef
-from sandbox.level.rules.rule import RuleDef
+from sandbox.level.rules.rule import ActionDef, QuestionDef, RuleDef
 
 # What becomes of a name: another one, or None where what it names is gone.
 Follow = Callable[[str], str | None]

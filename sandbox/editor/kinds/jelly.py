@@ -17,7 +17,7 @@ from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.kinds.fitting import Loop, fitting_spacing
+from sandbox.level.kinds.geometry import Loop, fitting_spacing
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape
 
 # Cells across the shorter side, and about how many cells the whole of one has at most: a plank of 10 x 0.2 m is two

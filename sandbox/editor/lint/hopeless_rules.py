@@ -7,7 +7,7 @@ from sandbox.editor.lint.finding import Finding, Rule
 from sandbox.editor.rule_text import named_zones
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
-from sandbox.level.rules.question import QuestionDef
+from sandbox.level.rules.rule import QuestionDef
 
 # Metrics that are never below zero.
 _NEVER_NEGATIVE = (

@@ -7,9 +7,7 @@ from sandbox.editor.lint.finding import Finding, Rule, called, called_spring, mi
 from sandbox.editor.lint.remedies import DIRECT
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level, NissenMaterial
-from sandbox.level.plan.constraints import add_constraints
-from sandbox.level.plan.forms import add_forms
-from sandbox.level.plan.materials import coefficients
+from sandbox.level.plan.materials import add_constraints, add_forms, coefficients
 from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.settings import WorldSettings

@@ -12,7 +12,7 @@ from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import ContactsDef, Level, Settings
-from sandbox.level.rules.hands import BudgetDef, HandsDef
+from sandbox.level.rules.player_limits import BudgetDef, PlayerLimits
 
 # Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
 FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
@@ -80,7 +80,7 @@ def _hands(document: Document) -> list[Property]:
         return found
 
     def set_budget(deed: str, document: Document, value: Any) -> Document:
-        now = document.level.hands or HandsDef()
+        now = document.level.hands or PlayerLimits()
         return set_level_field(document, "hands", {**now.__dict__, "at_most": {**now.at_most.__dict__, deed: value}})
 
     lists = [

@@ -25,9 +25,7 @@ from sandbox.editor.rule_text import question_text, rule_text
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import actuators
-from sandbox.level.rules.action import BELONGS, ActionDef
-from sandbox.level.rules.question import UNASKED, WALLS, QuestionDef
-from sandbox.level.rules.rule import CounterDef, RuleDef
+from sandbox.level.rules.rule import BELONGS, UNASKED, WALLS, ActionDef, CounterDef, QuestionDef, RuleDef
 
 # What a question asks, in words.
 _ASKS = {

@@ -7,7 +7,7 @@ from sandbox.editor.tools.drawing_options import AnyOptions
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import Point
-from sandbox.level.kinds.polygon import drawn_outline, is_simple
+from sandbox.level.kinds.geometry import drawn_outline, is_simple
 
 # A line drawn by hand is simplified by up to this part of the reach: what a person cannot see.
 HAND_TOLERANCE = 0.5

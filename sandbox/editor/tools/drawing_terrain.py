@@ -14,7 +14,7 @@ from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import TerrainDef, WallsDef
 from sandbox.level.format.limits import BELT_LIMIT, FRICTION_LIMIT
 from sandbox.level.format.quantities import Point
-from sandbox.level.kinds.polygon import simplified
+from sandbox.level.kinds.geometry import simplified
 
 
 def _surface(label: str, text: str, most: float) -> Any:

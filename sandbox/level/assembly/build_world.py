@@ -1,26 +1,56 @@
-"""build_world(level): builds a World from a level, in the order of the file."""
+"""build_world(level): builds a LevelWorld, a world that knows its level, in the order of the file."""
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.plan.actuators import add_actuators
-from sandbox.level.plan.constraints import add_constraints
-from sandbox.level.plan.forms import add_forms
-from sandbox.level.plan.materials import coefficients, strain_limits
+from sandbox.level.plan.materials import add_constraints, add_forms, coefficients, strain_limits
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.rules import add_rules
-from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
-from sandbox.level.plan.water import hulls_of, water_of
-from sandbox.level.plan.welds import Slots
+from sandbox.level.plan.surfaces import hulls_of, surface_of, surfaces_of, terrain_of, water_of
+from sandbox.physics.arrays import Slots
+from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.marks import NO_EDGE
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedLevel(Joined):
+    """Bodies that joined a world together, and a level of them alone."""
+
+    level: Level
+
+
+class LevelWorld(World):
+    """A world of a level, as `build_world` makes it.
+
+    level: what it was built from. joined: what joined it since.
+    """
+
+    joined: tuple[JoinedLevel, ...]
+
+    def __init__(self, level: Level) -> None:
+        """Without particles yet."""
+        materials = dict.fromkeys([DEFAULT_MATERIAL, *level.materials])
+        super().__init__(WorldSettings(**dict(level.settings)), list(materials))
+        self.level = level
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """The materials of the level and of what joined it, by name; those that were there first go before."""
+        known: dict[str, Material] = {}
+        for level in (self.level, *(each.level for each in self.joined)):
+            known = {**level.materials, **known}
+        return known
 
 
 def build_world(level: Level) -> LevelWorld:
@@ -144,3 +174,8 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
         belt=np.where(edge != NO_EDGE, belts, 0.0),
         **coefficients(material, materials),
     )
+
+
+def levels_of(joined: Iterable[Joined]) -> list[JoinedLevel]:
+    """What joined a world of a level, as a snapshot keeps it."""
+    return [each for each in joined if isinstance(each, JoinedLevel)]

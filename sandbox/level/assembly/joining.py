@@ -9,16 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.assembly.kit_files import read
 from sandbox.level.assembly.kits import Kit, KitNames, columns_of, join, packed_for
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.format.level_error import Fault, LevelError, shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL, DEFINITION_LIMIT, FORMAT, VERSION
 from sandbox.level.plan.actuators import actuators
-from sandbox.level.plan.axles import free_wheels
-from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
+from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, free_wheels, group_bits
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.commands.command import ADD_BODY, PROGRAM
 from sandbox.physics.kits.joining import KitError, check_kit

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.level.assembly.level_world import JoinedLevel, LevelWorld
+from sandbox.level.assembly.build_world import JoinedLevel, LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import (
     MATERIAL_LIMIT,

@@ -60,7 +60,7 @@ from sandbox.level.format.quantities import (
     unit,
 )
 from sandbox.level.kinds.bodies import AnyBody
-from sandbox.level.rules.hands import HandsDef
+from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.level.rules.rule import CounterDef, RuleDef
 from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.solvers import SOLVERS
@@ -385,7 +385,7 @@ class Level(Description):
     rules: tuple[RuleDef, ...] = Field(
         default=(), max_length=RULE_LIMIT, description="What the level asks while it runs, and what it does then."
     )
-    hands: HandsDef | None = Field(
+    hands: PlayerLimits | None = Field(
         default=None, description="What hands may do while it runs.", json_schema_extra=empty("everything")
     )
     checks: tuple[CheckDef, ...] = Field(

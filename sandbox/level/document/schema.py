@@ -29,7 +29,7 @@ TITLES = {
     "QuestionDef": "Question",
     "ActionDef": "Action",
     "StarsDef": "Stars",
-    "HandsDef": "Hands",
+    "PlayerLimits": "Hands",
     "BudgetDef": "Budget",
     **{
         model.__name__: name.capitalize()

@@ -8,7 +8,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.plan.actuators import driving_keys
-from sandbox.level.plan.layout import Layout
+from sandbox.level.plan.plan import Layout
 
 
 def material_faults(level: Level, path: str, name: str) -> Iterator[Fault]:

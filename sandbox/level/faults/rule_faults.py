@@ -10,10 +10,8 @@ from sandbox.level.faults.reference_faults import metric_faults, subject_faults
 from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import QUESTION_LIMIT
 from sandbox.level.plan.actuators import actuators
-from sandbox.level.plan.layout import Layout
-from sandbox.level.plan.plan import Plan
-from sandbox.level.rules.action import BELONGS, DOES, ActionDef
-from sandbox.level.rules.question import ASKS, UNASKED, WALLS, Asks, QuestionDef
+from sandbox.level.plan.plan import Layout, Plan
+from sandbox.level.rules.rule import ASKS, BELONGS, DOES, UNASKED, WALLS, ActionDef, Asks, QuestionDef
 
 # The fields of a question beside those that say what it asks, by these.
 _BOUNDS = ("at_most", "at_least")

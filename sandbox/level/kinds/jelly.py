@@ -14,9 +14,12 @@ from sandbox.level.format.limits import COORDINATE_LIMIT, CORNER_LIMIT, PARTICLE
 from sandbox.level.format.quantities import Angle, Description, Mass, Point, Size, Spacing, unit
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import NO_HULL, NO_POLYGONS, Expansion, directed_sides, edges_of, outline_of
-from sandbox.level.kinds.fitting import (
+from sandbox.level.kinds.geometry import (
+    BORDER,
     FittedMesh,
     Loop,
+    Pairs,
+    Points,
     TooCoarse,
     corners_of,
     disc_counts,
@@ -24,9 +27,14 @@ from sandbox.level.kinds.fitting import (
     fitted_mesh,
     fitted_work,
     fitting_spacing,
+    grid_bounds,
+    holds,
+    is_simple,
+    largest_part,
+    loops_touch,
+    polygon_grid,
+    turn,
 )
-from sandbox.level.kinds.geometry import Pairs, Points, turn
-from sandbox.level.kinds.polygon import BORDER, grid_bounds, holds, is_simple, largest_part, loops_touch, polygon_grid
 
 
 class BoxShape(Description):

@@ -12,11 +12,10 @@ from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.plan.plan import Plan
-from sandbox.level.plan.welds import Slots
-from sandbox.level.rules.hands import MEANINGS, HandsDef
-from sandbox.level.rules.question import WALLS, QuestionDef
-from sandbox.level.rules.rule import RuleDef
+from sandbox.level.rules.player_limits import MEANINGS, PlayerLimits
+from sandbox.level.rules.rule import WALLS, QuestionDef, RuleDef
 from sandbox.physics import rules
+from sandbox.physics.arrays import Slots
 from sandbox.physics.commands.command_table import CODES
 from sandbox.physics.rules import BOX, CIRCLE, NOBODY, POLYGON, Rules, Terms, Things, Zones
 from sandbox.physics.state import Family
@@ -53,7 +52,7 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
         _add_hands(world, level.hands)
 
 
-def _add_hands(world: World, hands: HandsDef) -> None:
+def _add_hands(world: World, hands: PlayerLimits) -> None:
     names = [f"{MEANINGS[deed].left} left" for deed in hands.budgets]
     _append(world, Family.COUNTER, names, counter=[most + 0.0 for most in hands.budgets.values()])
     count = len(world.counter)

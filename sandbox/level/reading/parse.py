@@ -1,15 +1,17 @@
 """parse_level: makes a Level of the bytes of a file, or lists all of its faults. Hostile input costs little.
 
-Order: size, depth by a scan of the bytes, duplicate keys, sizes of lists, the models on the same bytes, references
-and counts. Each stage relies on the ones before.
+Order: size, depth by a scan of the bytes, duplicate keys, conversion of older versions, sizes of lists, the models on
+the same bytes, references and counts. Each stage relies on the ones before.
 """
 
 import codecs
 import collections
+import contextlib
+import gc
 import itertools
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -17,12 +19,12 @@ from pydantic import ValidationError
 from sandbox.level.document.messages import place, worded
 from sandbox.level.document.model import LEVEL_KEYS, Level
 from sandbox.level.faults.validate import check_level
-from sandbox.level.format.early_end import early_end
-from sandbox.level.format.foreign import foreign_bytes, foreign_fault, foreign_keys
-from sandbox.level.format.gc_pause import collector_paused
+from sandbox.level.format.foreign import foreign_bytes, foreign_fault, foreign_keys, scan
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import (
     CHECK_LIMIT,
+    DEFAULT_MATERIAL,
+    DEFAULT_SOLVER,
     FAULT_LIMIT,
     FILE_LIMIT,
     FORMAT,
@@ -32,11 +34,11 @@ from sandbox.level.format.limits import (
     SPRING_LIMIT,
     TAG_LIMIT,
     TERRAIN_LIMIT,
+    VERSION,
     ZONE_LIMIT,
 )
-from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import keep_plan
-from sandbox.level.reading.migrate import migrated
+from sandbox.physics.equation import HIGHEST_COEFFICIENT, half_step, whole_of_parts
 
 # Beyond this many errors the library takes seconds to list them all, so they are looked for piece by piece.
 _FLOOD = 2_000
@@ -63,7 +65,7 @@ LEVEL_LIMITS = {
 def parse_level(data: bytes, source: str) -> Level:
     """Read a level from the bytes of a file; source names it in messages. Raises LevelError with all faults."""
     try:
-        with collector_paused(len(data) > _LARGE):
+        with _collector_paused(len(data) > _LARGE):
             level = _parse(data, source)
             keep_plan(level, check_level(level, source))
     except (MemoryError, RecursionError):
@@ -122,7 +124,7 @@ def json_value(data: bytes, source: str) -> Any:
     try:
         raw = json.loads(decoded, object_pairs_hook=collect)
     except json.JSONDecodeError as error:
-        text = early_end(decoded, error) or error.msg[:1].lower() + error.msg[1:]
+        text = _early_end(decoded, error) or error.msg[:1].lower() + error.msg[1:]
         raise LevelError(source, [(f"line {error.lineno}, column {error.colno}", f"not JSON: {text}")]) from None
     except ValueError:  # Python's own limit of digits
         raise LevelError(source, [("", "an integer has thousands of digits; write a smaller number")]) from None
@@ -257,3 +259,121 @@ def _is_real(error: dict[str, Any], raw: Any) -> bool:
     for part in parts[:-1]:
         raw = raw[part]
     return not (isinstance(raw, dict) and parts[-1] in raw)
+
+
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"?|[{}\[\]:,]|[^\s{}\[\]:,"]+', re.DOTALL)
+# What may follow the place of an error in a text that merely stops: part of a word or number.
+_STUMP = re.compile(r"[\w.+-]*\s*", re.ASCII)
+
+
+def _early_end(text: str, error: json.JSONDecodeError) -> str | None:
+    """Where a text ends too early, in words; None if it has another fault."""
+    is_cut = error.msg.startswith("Unterminated string") or _STUMP.fullmatch(text, error.pos)
+    path = _open_path(text) if is_cut else None
+    if path is None:
+        return None
+    return f"the file ends inside {json_path(path)}" if path else "the file ends inside the level"
+
+
+def _open_path(text: str) -> list[str | int] | None:
+    """Keys and indices of the lists and objects that are open at the end of a text; None if there are none."""
+    opened: list[list[str | int | None]] = []
+    last = ""
+    for found in _TOKEN.finditer(text):
+        token = found[0]
+        if token in "{[":
+            opened.append([None if token == "{" else 0])
+        elif token in "}]":
+            if not opened:
+                return None
+            opened.pop()
+            if opened and not isinstance(opened[-1][0], int):
+                opened[-1][0] = None
+        elif not opened:
+            return None
+        elif token == ":":
+            opened[-1][0] = last.strip('"')
+        elif token == ",":
+            place = opened[-1][0]
+            opened[-1][0] = place + 1 if isinstance(place, int) else None
+        last = token
+    places = [place for (place,) in opened]
+    return [place for place in places if place is not None] if opened else None
+
+
+@contextlib.contextmanager
+def _collector_paused(pause: bool) -> Iterator[None]:
+    """Pause the collector inside, if asked, unless it is paused already."""
+    pause = pause and gc.isenabled()
+    if pause:
+        gc.disable()
+    try:
+        yield
+    finally:
+        if pause:
+            gc.enable()
+
+
+Migration = Callable[[dict[str, Any]], dict[str, Any]]
+
+
+def migrated(
+    raw: dict[str, Any], migrations: Mapping[int, Migration] | None = None, version: int = VERSION
+) -> dict[str, Any]:
+    """The JSON of a level converted to this version of the format; unchanged if its version is this one or unknown.
+
+    Raises ValueError if it is not valid in its own version.
+    """
+    migrations = MIGRATIONS if migrations is None else migrations
+    while type(raw.get("version")) is int and raw["version"] < version and raw["version"] in migrations:
+        before = raw["version"]
+        try:
+            raw = {**migrations[before](raw), "version": before + 1}
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+            raise ValueError(f"is no valid level of version {before}, so it cannot be brought to {version}") from None
+    return raw
+
+
+def _springs_keep_their_constant(raw: dict[str, Any]) -> dict[str, Any]:
+    """Version 1 to 2: substeps of the direct solver keep k and c of springs; before, they kept the motion of each.
+
+    Changes Cs and Cd of a tick so that those of a substep stay the same. Materials at 1, and bodies with a firmness,
+    stay as they are.
+    """
+    settings = raw.get("settings") or {}
+    parts = settings.get("substeps", 1)
+    if settings.get("solver", DEFAULT_SOLVER) != "direct" or type(parts) is not int or parts < 2:
+        return raw
+    materials = dict(raw.get("materials") or {})
+    sprung = [*(raw.get("bodies") or []), *(raw.get("springs") or [])]
+    if any(part.get("material", DEFAULT_MATERIAL) == DEFAULT_MATERIAL for part in sprung):
+        materials.setdefault(DEFAULT_MATERIAL, {})
+    return {
+        **raw,
+        "materials": {
+            name: material if "law" in material else _same_in_parts(material, parts)
+            for name, material in materials.items()
+        },
+        "bodies": [
+            {**body, "bending": _same_in_parts(body["bending"], parts)} if body.get("bending") is not None else body
+            for body in raw.get("bodies") or []
+        ],
+    }
+
+
+def _same_in_parts(springs: dict[str, Any], parts: int) -> dict[str, Any]:
+    stiffness, damping = springs.get("stiffness", 0.5), springs.get("damping", 0.9)
+    if not (0.0 <= stiffness <= 1.0 and 0.0 <= damping <= HIGHEST_COEFFICIENT):
+        return springs
+    halved = 1
+    while halved < parts:
+        stiffness, damping = half_step(stiffness, damping)
+        halved *= 2
+    stiffness, damping = whole_of_parts(stiffness, damping, parts)
+    return {**springs, "stiffness": stiffness, "damping": damping}
+
+
+# From a version to the next: the plain JSON of a level, not yet looked at, in; another object out, whose version is
+# set here. What version 2 says, version 3 says too. A file keeps its version until it is saved. Taking a step out makes
+# every file of its version unreadable.
+MIGRATIONS: dict[int, Migration] = {1: _springs_keep_their_constant, 2: dict}

@@ -20,12 +20,11 @@ from sandbox.level.document.model import (
     version_fault,
 )
 from sandbox.level.faults.validate import level_faults
+from sandbox.level.format.foreign import scan
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
-from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import Plan
-from sandbox.level.reading.migrate import migrated
-from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS
+from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS, migrated
 from sandbox.level.rules.rule import CounterDef, RuleDef
 
 _NAME = "Untitled"

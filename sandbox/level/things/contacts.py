@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Slots

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.assembly.level_world import LevelWorld
-from sandbox.level.rules.question import WALLS
+from sandbox.level.assembly.build_world import LevelWorld
+from sandbox.level.rules.rule import WALLS
 from sandbox.physics.arrays import Slots
 
 # Particles that a command adds one by one are each a thing, and all have this before the dot.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.format.look import PALETTE, BodyLook, ParticleLook, colour_of
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.things.names import ThingNames

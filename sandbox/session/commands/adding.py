@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.assembly.kits import join_loose
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, Point, Share, Velocity
 from sandbox.physics.commands.command import ADD_PARTICLE, ADD_SPRING
 from sandbox.physics.kits.joining import KitError

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.format.level_error import shown
-from sandbox.level.rules.hands import thing_of, words_of
+from sandbox.level.rules.player_limits import thing_of, words_of
 from sandbox.physics.commands.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, HAND, RULE, UNTOUCHABLE
 from sandbox.physics.commands.command_table import WORDS, RefusedCommand
 from sandbox.physics.keeping.equipment import Firmness

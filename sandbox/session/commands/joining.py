@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.assembly.joining import join_definition
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.level_error import LevelError
 from sandbox.session.commands.command import Command, CommandError
 

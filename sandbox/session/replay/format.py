@@ -30,9 +30,8 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.assembly.joining import join_definition
-from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import file_of, level_data
 from sandbox.physics.constraints import AREA, CONSTRAINT_NAMES

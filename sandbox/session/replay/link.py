@@ -20,8 +20,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sandbox.level.document.canonical import level_data
 from sandbox.level.document.model import Level
+from sandbox.level.format.foreign import scan
 from sandbox.level.format.level_error import LevelError
-from sandbox.level.format.scan import scan
 from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION

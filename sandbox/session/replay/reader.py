@@ -13,10 +13,9 @@ from typing import Annotated, Any, BinaryIO, ClassVar, TypeVar, cast
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from sandbox.level.document.model import Level, Settings
-from sandbox.level.format.foreign import LFS_POINTER
+from sandbox.level.format.foreign import LFS_POINTER, scan
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
-from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import Plan, kept_plan
 from sandbox.level.reading.files import LevelError, keep_file, parse_level
 from sandbox.physics.settings import WorldSettings

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.colours import Theme, packed
 from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, is_filled, spring_look
 from sandbox.app.draw.textures import Tiles
-from sandbox.level.assembly.level_world import levels_of
+from sandbox.level.assembly.build_world import levels_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef

@@ -1,4 +1,4 @@
-"""What hands may do in a level, and how often: by words, each of which stands for commands."""
+"""PlayerLimits: what hands may do in a level, and how often, by words that each stand for commands."""
 
 from collections.abc import Collection, Iterator
 from typing import Annotated, Literal, NamedTuple, get_args
@@ -65,7 +65,7 @@ class BudgetDef(Description):
     )
 
 
-class HandsDef(Description):
+class PlayerLimits(Description):
     """What hands may do while the level runs. Keys, undo and redo always work, and rules do what they like."""
 
     may: Annotated[tuple[Deed, ...], Field(max_length=len(DEEDS))] | None = Field(
@@ -117,14 +117,14 @@ def words_of(kind: str) -> tuple[str, str]:
     return kind, ""
 
 
-def left_of(hands: HandsDef | None, count: int) -> list[tuple[int, str, int]]:
+def left_of(hands: PlayerLimits | None, count: int) -> list[tuple[int, str, int]]:
     """Of each budget the row among so many counters, its name for players, and how many there are at the start."""
     if hands is None:
         return []
     return [(hands.row(deed, count), MEANINGS[deed].left, most) for deed, most in hands.budgets.items()]
 
 
-def hand_faults(hands: HandsDef | None, things: Collection[str]) -> Iterator[Fault]:
+def hand_faults(hands: PlayerLimits | None, things: Collection[str]) -> Iterator[Fault]:
     """Faults of what is listed twice or is not there, and of budgets of what hands may not do.
 
     things: the names of bodies and loose particles.
