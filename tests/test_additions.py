@@ -80,7 +80,7 @@ from sandbox.editor.edits.placing import add_spring
 from sandbox.editor.tools.drawing_options import Options, mass_option
 from sandbox.editor.tools.drawing_particles import new_particle
 from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 
 

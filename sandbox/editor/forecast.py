@@ -1,27 +1,34 @@
-"""Forecast: where everything will hang once it has come to rest, found by a damped run of the level.
+"""Runs of a level beside the sheet, a slice of time at a time: forecast of rest, firing of rules, trail of things.
 
-Kinetic damping (Cundall 1976; Barnes 1999): each part moves freely until its kinetic energy has passed a peak, where
-it is near an equilibrium of most of its motion, and is stopped there. The level's own solver and settings make the
-run, so that where it ends is where playing would end.
+A forecast is a damped run. Kinetic damping (Cundall 1976; Barnes 1999): each part moves freely until its kinetic energy
+has passed a peak, where it is near an equilibrium of most of its motion, and is stopped there. The level's own solver
+and settings make the run, so that where it ends is where playing would end.
 """
 
-from collections.abc import Generator, Iterator
+import time
+from collections import deque
+from collections.abc import Generator, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.actuators import driven_items
-from sandbox.editor.items import Selection
+from sandbox.editor.edits.grouping import groups_of
+from sandbox.editor.items import Item, Selection
 from sandbox.editor.lint.finding import called, falling_particles
-from sandbox.editor.scene import make_scene
-from sandbox.editor.slices import work_for
+from sandbox.editor.scene import Scene, driven_items, make_scene
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from sandbox.session.commands import Command
+from sandbox.session.held_keys import HeldKeys
+from sandbox.session.session import Session
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
+
+# What was done in a run: the tick, the gesture and the command of each, in order.
+Deeds = list[tuple[int, int, Command]]
 
 # At rest is what moves by less than this part of the level's size within a window of this many seconds. Larger: a heavy
 # weight on a long rope stops above its place; smaller: a soft jelly takes minutes.
@@ -36,6 +43,15 @@ LONGEST = 60.0
 PAST_PEAK = 0.9
 # Particles that move, at most: one tick of more takes so long that drawing waits for it.
 LARGEST = 4_000
+
+
+# No more of a run is stepped again [s].
+LONGEST_RUN = 60.0
+
+
+# How far ahead it looks [s], and how often it notes the places in a second.
+SECONDS = 5.0
+NOTES = 30
 
 
 class Forecast:
@@ -142,3 +158,127 @@ def _stop(world: World, chosen: NDArray[np.bool_]) -> None:
     slots = np.flatnonzero(chosen)
     world.velocity[slots] = 0.0
     world.slow_velocity[slots] = 0.0
+
+
+class Firing:
+    """A run in work, a slice at a time; times: when each rule fired [s], by its id; fault: why it went no further."""
+
+    def __init__(self, level: Level, deeds: Deeds, last_tick: int) -> None:
+        self.level = level
+        self.times: dict[str, list[float]] = {rule.id: [] for rule in level.rules}
+        self.is_done = False
+        self.fault = ""
+        self._work = self._run(deque(deeds), last_tick)
+
+    def advance(self, seconds: float) -> bool:
+        """Work for about that long, at least one tick; whether it is done."""
+        self.is_done = work_for(self._work, seconds)
+        return self.is_done
+
+    def _run(self, deeds: deque[tuple[int, int, Command]], last_tick: int) -> Iterator[None]:
+        session = Session(self.level)
+        rate, world = session.world.settings.tick_rate, session.world
+        if len(world.position) > LARGEST:
+            self.fault = "the level is too large to step the run again"
+            return
+        for _ in range(min(last_tick, round(LONGEST_RUN * rate))):
+            while deeds and deeds[0][0] <= session.tick:
+                _, gesture, command = deeds.popleft()
+                session.submit(command, gesture)
+            session.advance()
+            for rule in np.flatnonzero(session.world.rule_last == session.tick).tolist():
+                self.times[self.level.rules[rule].id].append(session.tick / rate)
+            yield None
+
+
+def deeds_of(run: Session) -> tuple[Deeds, int]:
+    """What was done in a run and counts, and its last tick."""
+    entries = [entry for entry in run.history.timeline if entry.in_effect and not entry.implied]
+    return [(entry.tick, entry.gesture, entry.command) for entry in entries], run.last_tick
+
+
+class Trail:
+    """A run in work, a slice at a time; it changes nothing but its own session.
+
+    places: of each note the mean place [m] (k, 2) of each item that has particles, NaN of others; per_second: notes in
+    a second. fault: why there is none; "" = there is.
+    """
+
+    def __init__(self, level: Level, run: Session | None = None) -> None:
+        self.level = level
+        self.scene: Scene = make_scene(level)
+        self.places: list[Floats] = []
+        self.per_second = 0.0
+        self.is_done = False
+        self.fault = ""
+        self._work = self._run(run)
+        self._found: tuple[object, list[Floats]] = (None, [])
+
+    def advance(self, seconds: float) -> bool:
+        """Work for about that long, at least one tick; whether it is done."""
+        self.is_done = work_for(self._work, seconds)
+        return self.is_done
+
+    def _run(self, run: Session | None) -> Iterator[None]:
+        scene = self.scene
+        if len(scene.position) > LARGEST:
+            self.fault = f"{len(scene.position):,} particles are too many for a trail ({LARGEST:,})"
+            return
+        # Of welded particles the world has the first alone.
+        is_first = scene.first_of_weld == np.arange(len(scene.position))
+        slots = (np.cumsum(is_first) - 1)[scene.first_of_weld]
+        count = np.bincount(scene.particle_item, minlength=len(scene.items))
+        session = run if run is not None else Session(self.level)
+        rate = session.world.settings.tick_rate
+        every = max(1, rate // NOTES)
+        self.per_second = rate / every
+        # A level that waits for keys says in its checks which ones to hold.
+        held = HeldKeys(self.level, next((check.hold for check in self.level.checks if check.hold), ()))
+        last = round(SECONDS * rate) if run is None else min(round(SECONDS * rate), session.last_tick)
+        for tick in range(last + 1):
+            if tick % every == 0:
+                self.places.append(_means(session.world.position[slots], scene.particle_item, count))
+            if tick < last:
+                if run is None:
+                    held.press(session)
+                session.advance()
+            yield None
+
+    def lines(self, selection: Selection, most: int) -> list[Floats]:
+        """The ways [m] (notes, 2) of what is selected, a group's as one, of no more than `most` things.
+
+        They are kept until more is known or something else is asked for: each frame draws them.
+        """
+        asked = (selection, most, len(self.places))
+        if self._found[0] != asked:
+            self._found = asked, self._lines(selection)[:most] if self.places else []
+        return self._found[1]
+
+    def _lines(self, selection: Selection) -> list[Floats]:
+        index = {item: number for number, item in enumerate(self.scene.items)}
+        groups = groups_of(self.level)
+        units: dict[object, list[Item]] = {}
+        for item in sorted(selection.intersection(index), key=index.__getitem__):
+            units.setdefault(groups.get(item, item), []).append(item)
+        places = np.stack(self.places)
+        found = [_middle(places, [index[item] for item in items]) for items in units.values()]
+        return [line for line in found if line is not None]
+
+
+def _means(position: Floats, owner: NDArray[np.int64], count: NDArray[np.int64]) -> Floats:
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sums = [np.bincount(owner, position[:, axis], len(count)) / count for axis in (0, 1)]
+    return np.stack(sums, axis=1)
+
+
+def _middle(places: Floats, items: Sequence[int]) -> Floats | None:
+    chosen = places[:, items]
+    known = chosen[:, ~np.isnan(chosen[0, :, 0])]
+    return known.mean(axis=1) if known.shape[1] else None
+
+
+def work_for(work: Iterator[None], seconds: float) -> bool:
+    """Go on with some work for about that long [s], at least one step of it; whether it is done."""
+    # The clock says when to pause, never what comes out.
+    end = time.perf_counter() + seconds
+    return all(time.perf_counter() < end for _ in work)

@@ -12,9 +12,8 @@ import numpy as np
 
 from sandbox.editor.document import Document, EditError, check_places, checked
 from sandbox.editor.edits.grouping import with_groups
-from sandbox.editor.edits.moving import within
+from sandbox.editor.edits.moving import shifted, within, without_dust
 from sandbox.editor.edits.names import owner_of
-from sandbox.editor.edits.placement import shifted, without_dust
 from sandbox.editor.items import Item, Kind, with_same
 from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.level_error import shown

@@ -7,13 +7,12 @@ from typing import Any
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import set_material
+from sandbox.editor.forecast import Trail, work_for
 from sandbox.editor.items import chosen_bodies, chosen_springs
 from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
-from sandbox.editor.slices import work_for
-from sandbox.editor.trail import Trail
 from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level, Material
 from sandbox.level.format.level_error import LevelError

@@ -1,6 +1,6 @@
 """Scene: a level as arrays to draw, pick from and measure, made again after every edit from what did not change."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
-from sandbox.editor.zone_outline import outline_of
-from sandbox.level.document.model import Level, ParticleDef
+from sandbox.level.document.model import Level, ParticleDef, ZoneDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.format.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.geometry import distances
+from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.plan import Layout, Plan, kept_plan, united
 from sandbox.level.plan.surfaces import surfaces_of
 
@@ -24,6 +26,14 @@ Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Box = tuple[float, float, float, float]
+
+
+# Fields of a body that its particles do not depend on, but for the place that is added to each of them.
+_PLACED = ("type", "id", "position", "velocity", "material", "group", "extras")
+
+
+# Sides by which a circle is drawn.
+ROUND = 72
 
 
 class _Joined(NamedTuple):
@@ -408,5 +418,61 @@ def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
     return type(body), *(value for name, value in body.__dict__.items() if name not in _PLACED)
 
 
-# Fields of a body that its particles do not depend on, but for the place that is added to each of them.
-_PLACED = ("type", "id", "position", "velocity", "material", "group", "extras")
+def outline_of(zone: ZoneDef) -> NDArray[np.float64]:
+    """Corners [m] (k, 2) of a zone, in order; of a circle many."""
+    if zone.box is not None:
+        left, bottom, right, top = zone.box
+        return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
+    if zone.circle is not None:
+        x, y, radius = zone.circle
+        turn = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
+        return np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn)])
+    return np.array(zone.polygon, dtype=np.float64).reshape(-1, 2)
+
+
+class SceneActuators(NamedTuple):
+    """Springs that are muscles, one for each body of them; hydraulics; hubs with motors, and inner radii [m]."""
+
+    muscles: list[int]
+    hydraulics: list[tuple[int, HydraulicDef]]
+    motors: list[tuple[int, float, MotorDef]]
+
+
+def scene_actuators(scene: Scene) -> SceneActuators:
+    """Find what is driven in a scene."""
+    level = scene.level
+    found = SceneActuators([], [], [])
+    for index, body in enumerate(level.bodies):
+        if body.drive is not None:
+            start, end = np.searchsorted(scene.spring_item, [index, index + 1]).tolist()
+            if start < end:
+                found.muscles.append(_middle(scene, start, end))
+        if isinstance(body, WheelDef) and body.motor is not None:
+            found.motors.append((scene.slot(f"{body.id}.hub"), body.radius - body.thickness, body.motor))
+    first = len(scene.rest_length) - len(level.springs)
+    for index, spring in enumerate(level.springs, first):
+        if spring.drive is not None:
+            found.muscles.append(index)
+        if spring.hydraulic is not None:
+            found.hydraulics.append((index, spring.hydraulic))
+    return found
+
+
+def driven_items(scene: Scene) -> Iterator[Item]:
+    """Items that move by themselves: muscles, and wheels with a motor that runs from the start."""
+    level = scene.level
+    running = {part.name for part in actuators(level) if part.start_value}
+    for body in level.bodies:
+        if (body.drive is not None and body.drive.amplitude) or body.id in running:
+            yield Item("body", body.id)
+    for index, spring in enumerate(level.springs):
+        if spring.drive is not None and spring.drive.amplitude:
+            yield Item("spring", index)
+
+
+def _middle(scene: Scene, start: int, end: int) -> int:
+    """The spring of a range that lies nearest to the middle of all of them."""
+    a, b = scene.particle_a[start:end], scene.particle_b[start:end]
+    middles = (scene.position[a] + scene.position[b]) / 2.0
+    apart = middles - middles.mean(axis=0)
+    return start + int(np.argmin(np.sum(apart * apart, axis=1)))

@@ -31,7 +31,7 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.window.app import App
 from sandbox.editor.items import items_of
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from sandbox.level.reading.files import load_level
 from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay

@@ -4,8 +4,8 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.editor.edits.parts import place_part
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.edits.copying import place_part
+from sandbox.editor.storage.level_file import catalogue
 from tests.support.machines import build_car, build_chain, build_walker, check_car
 
 

@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from sandbox.editor.scene import make_scene
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT

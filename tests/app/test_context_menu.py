@@ -3,9 +3,9 @@
 import pygame
 import pytest
 
-from sandbox.editor.edits.parts import place_part
+from sandbox.editor.edits.copying import place_part
 from sandbox.editor.items import Item
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from tests.app.conftest import small_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")

@@ -5,7 +5,7 @@ import pytest
 
 from sandbox.app.parts.part_page import SMALL_TEXT
 from sandbox.app.play.stage import CATALOGUE
-from sandbox.editor.storage.part_files import keep_part
+from sandbox.editor.storage.level_file import keep_part
 from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session

@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from sandbox.editor.items import items_of
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from sandbox.level.checks import METRICS
 from sandbox.level.reading.files import load_level, shipped_levels
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.copying import place_part
 from sandbox.editor.edits.joining import joining_commands
-from sandbox.editor.edits.parts import place_part
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash

@@ -3,11 +3,11 @@
 import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
+from sandbox.editor.edits.copying import place_part
 from sandbox.editor.edits.grouping import group, groups_of, rename_group, shift
-from sandbox.editor.edits.parts import place_part
 from sandbox.editor.items import Item, definitions, items_of
 from sandbox.editor.objects import object_lines
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from tests.support.zoo import zoo
 
 PARTS = {part.path.stem: part.level for part in catalogue() if not part.is_own}

@@ -3,7 +3,7 @@
 import pytest
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.retime import set_rate_in_pace
+from sandbox.editor.edits.materials import set_rate_in_pace
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.session import Session
 from tests.app.conftest import small_level

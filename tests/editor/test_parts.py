@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
-from sandbox.editor.edits.copying import copy_text, paste
+from sandbox.editor.edits.copying import copy_text, part_of, paste, place_part
 from sandbox.editor.edits.fields import set_setting
-from sandbox.editor.edits.parts import part_of, place_part
 from sandbox.editor.history import History
 from sandbox.editor.items import Item, items_of
 from sandbox.editor.scene import make_scene
-from sandbox.editor.storage.level_file import StorageError
-from sandbox.editor.storage.part_files import catalogue, delete_part, keep_part, rename_part
+from sandbox.editor.storage.level_file import StorageError, catalogue, delete_part, keep_part, rename_part
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import NissenMaterial, ParticleDef, TerrainDef

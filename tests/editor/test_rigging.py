@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document, EditError, empty_level
+from sandbox.editor.edits.additions import wave_along, wave_in_order
 from sandbox.editor.edits.bake import begin_at_rest
-from sandbox.editor.edits.phase_wave import wave_along, wave_in_order
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.items import Item
 from sandbox.editor.scene import make_scene

@@ -10,8 +10,8 @@ from sandbox.editor.edits.copying import duplicate, paste
 from sandbox.editor.edits.deleting import break_apart, delete
 from sandbox.editor.edits.fields import rename, set_field, set_level_field
 from sandbox.editor.edits.grouping import reorder
+from sandbox.editor.edits.names import lost_rules
 from sandbox.editor.edits.placing import cut_springs
-from sandbox.editor.edits.rule_names import lost_rules
 from sandbox.editor.items import Item
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import read_level

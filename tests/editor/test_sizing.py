@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import EditError
-from sandbox.editor.edits.sizing import sized
+from sandbox.editor.edits.joining import sized
 from sandbox.level.document.model import SpringDef
 from sandbox.level.format.quantities import replaced
 from sandbox.session.commands import SetDrive

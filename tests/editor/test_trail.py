@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
+from sandbox.editor.forecast import SECONDS, Trail
 from sandbox.editor.items import Item
-from sandbox.editor.trail import SECONDS, Trail
 from sandbox.level.reading.files import level_data, load_level, parse_level
 from sandbox.session.commands import Pin
 from sandbox.session.session import Session

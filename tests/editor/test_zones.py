@@ -7,7 +7,7 @@ import pytest
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import group
 from sandbox.editor.edits.moving import can_scale_unevenly, mirror, move, rotate, scale
-from sandbox.editor.edits.zones import add_zone
+from sandbox.editor.edits.terrain import add_zone
 from sandbox.editor.items import Item
 from sandbox.editor.lint.lint import findings
 from sandbox.editor.objects import object_lines

@@ -69,10 +69,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from sandbox.editor.kinds.editing import BodyEditing
-from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.kinds.editing import Motion
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.ladder import LadderDef
 

@@ -8,7 +8,7 @@ import pytest
 
 from sandbox import load_level
 from sandbox.app.share.playing import parts_for
-from sandbox.editor.storage.part_files import catalogue
+from sandbox.editor.storage.level_file import catalogue
 from sandbox.replay import Replay, read_replay, verify
 from sandbox.session.replay.link import replay_of
 from sandbox.tools.dropping import PARTS

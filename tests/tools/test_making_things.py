@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.editor.document import Document
-from sandbox.editor.edits.adopt_dropped import keep_added
+from sandbox.editor.edits.bake import keep_added
 from sandbox.editor.edits.joining import copying_commands
 from sandbox.level.format.quantities import replaced
 from sandbox.physics.meshing.fitting import CROSSES, TOO_SMALL

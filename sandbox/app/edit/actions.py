@@ -15,11 +15,11 @@ from sandbox.app.edit.part_keeping import ask_to_keep_part
 from sandbox.app.widgets.dialogs import ask, choose, choose_row, fill_in
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
+from sandbox.editor.edits.additions import wave_in_order
 from sandbox.editor.edits.copying import array_circle, array_line, duplicate
 from sandbox.editor.edits.deleting import break_apart, delete
 from sandbox.editor.edits.grouping import group, reorder, ungroup
 from sandbox.editor.edits.moving import align, distribute, mirror
-from sandbox.editor.edits.phase_wave import wave_in_order
 from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
 from sandbox.editor.pick import items_of_material

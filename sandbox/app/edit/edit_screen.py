@@ -35,17 +35,15 @@ from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move
-from sandbox.editor.edits.rule_names import lost_rules
+from sandbox.editor.edits.names import lost_rules
 from sandbox.editor.held_joins import with_joins_held
 from sandbox.editor.history import History
-from sandbox.editor.items import Selection
+from sandbox.editor.items import Selection, Visibility
 from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
-from sandbox.editor.tools.palette import TOOLS
-from sandbox.editor.tools.selecting import LASSO
+from sandbox.editor.tools.palette import LASSO, TOOLS
 from sandbox.editor.tools.snap import Snap, snap
-from sandbox.editor.visibility import Visibility
 
 # Sizes in layout units.
 SIDE_WIDTH = 292.0

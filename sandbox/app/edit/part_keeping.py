@@ -6,10 +6,9 @@ from sandbox.app.base.sentences import capitalised, sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.document import EditError
-from sandbox.editor.edits.parts import part_of
+from sandbox.editor.edits.copying import part_of
 from sandbox.editor.items import chosen_definitions
-from sandbox.editor.storage.level_file import StorageError
-from sandbox.editor.storage.part_files import keep_part
+from sandbox.editor.storage.level_file import StorageError, keep_part
 
 
 def ask_to_keep_part(screen: Editing) -> None:

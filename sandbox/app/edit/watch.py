@@ -8,11 +8,9 @@ from numpy.typing import NDArray
 
 from sandbox.app.contracts.application import Editing
 from sandbox.editor.edits.bake import begin_at_rest
-from sandbox.editor.firing import Deeds, Firing, deeds_of
-from sandbox.editor.forecast import Forecast
+from sandbox.editor.forecast import Deeds, Firing, Forecast, Trail, deeds_of
 from sandbox.editor.lint.lint import Finding, findings
 from sandbox.editor.range_trial import RangeTrial
-from sandbox.editor.trail import Trail
 from sandbox.level.document.model import Level
 from sandbox.session.session import Session
 

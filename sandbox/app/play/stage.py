@@ -15,8 +15,7 @@ from sandbox.app.draw.renderer import Detail, Overlay, Renderer
 from sandbox.app.film.film import Film
 from sandbox.app.run.followers import StabilityPaint
 from sandbox.app.run.playback import Playback
-from sandbox.editor.edits.joining import joining_commands
-from sandbox.editor.edits.sizing import sized
+from sandbox.editor.edits.joining import joining_commands, sized
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.applied_forces import Pull, pulls_of
 from sandbox.physics.analysis.query import nearest_particle, shown_particles

@@ -23,7 +23,7 @@ from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
 from sandbox.editor.document import EditError
-from sandbox.editor.edits.collision_groups import collision_groups
+from sandbox.editor.edits.materials import collision_groups
 from sandbox.editor.panel.extra_values import HOW_TO_ADD
 from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.panel.property import MIXED, Property, Section

@@ -1,17 +1,20 @@
-"""Copies of what is selected: as text, pasted, duplicated, in a row and in a circle.
+"""Copies of what is selected: as text, pasted, duplicated, in a row, in a circle, and as parts of the catalogue.
 
 A fragment is a level of its own: selected bodies, loose particles, terrain and zones, loose springs and welds between
-them, the materials that they are made of, and the tick rate that these are for.
+them, the materials that they are made of, and the tick rate that these are for. The origin of a part is what the
+pointer holds it by; of what is kept that is the middle of its lower edge.
 """
 
 from collections.abc import Iterable
 
+import numpy as np
+
 from sandbox.editor.document import Document, EditError, checked
-from sandbox.editor.edits.collision_groups import without_lost_groups
+from sandbox.editor.edits.grouping import group as grouped
 from sandbox.editor.edits.grouping import taken_groups
-from sandbox.editor.edits.moving import move, rotate
+from sandbox.editor.edits.materials import set_rate_in_pace, without_lost_groups
+from sandbox.editor.edits.moving import mirror, move, rotate
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, rewired, taken_ids
-from sandbox.editor.edits.retime import set_rate_in_pace
 from sandbox.editor.items import (
     Item,
     Selection,
@@ -23,10 +26,11 @@ from sandbox.editor.items import (
     keys,
 )
 from sandbox.editor.scene import make_scene
+from sandbox.editor.tools.snap import PLACE_DECIMALS
 from sandbox.level.document.canonical import level_text
-from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.document.model import ContactsDef, Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
 from sandbox.level.format.level_error import LevelError
-from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT
+from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT, TEXT_LIMIT
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.reading.parse import parse_level
@@ -223,3 +227,39 @@ def _material(copy: Level, name: str, materials: dict[str, Material]) -> str:
     free = free_ids(set(materials), [name])[0]
     materials[free] = wanted
     return free
+
+
+def place_part(document: Document, part: Level, at: Point, mirrored: bool = False) -> Document:
+    """Add a part with its origin at a point [m], as one group, and select it; mirrored: left for right.
+
+    Names become free ones; materials of the same name and values are shared, others get a name of their own. Where
+    nothing touches anything yet and the part is made to touch, things do from now on. Raises EditError.
+    """
+    whole = Document(part, frozenset(items_of(part)))
+    if not whole.selection:
+        raise EditError("there is nothing in this part")
+    if mirrored:
+        whole = mirror(whole, "x", (0.0, 0.0))
+    if len(whole.selection) > 1:
+        whole = grouped(whole, part.name)
+    level = document.level
+    if part.contacts is not None and not level.has_contacts:
+        level = replaced(level, contacts=part.contacts)
+    return Document(*inserted(level, [shifted(whole.level, *at)]))
+
+
+def part_of(document: Document, name: str) -> Level:
+    """What is selected as a part of that name. Raises EditError where that is nothing, or the name none."""
+    name = name.strip()
+    if not 0 < len(name) <= TEXT_LIMIT:
+        raise EditError(f"a name has 1 to {TEXT_LIMIT} characters")
+    part, level = fragment(document), document.level
+    scene = make_scene(part)
+    box = scene.bounds()
+    assert box is not None
+    left, bottom, right, _ = box
+    # Particles stand on their rims.
+    bottom = min(bottom, float(np.min(scene.position[:, 1] - scene.radius, initial=np.inf)))
+    part = shifted(part, -round((left + right) / 2.0, PLACE_DECIMALS), -round(bottom, PLACE_DECIMALS))
+    contacts = (level.contacts or ContactsDef()) if level.has_contacts else None
+    return replaced(part, name=name, description="", contacts=contacts)

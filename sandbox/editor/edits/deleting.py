@@ -3,10 +3,9 @@
 from dataclasses import replace
 
 from sandbox.editor.document import Document, EditError, checked
-from sandbox.editor.edits.collision_groups import without_lost_groups
 from sandbox.editor.edits.grouping import taken_groups
-from sandbox.editor.edits.names import free_ids, owner_of, rewired, taken_ids
-from sandbox.editor.edits.rule_names import with_springs_followed
+from sandbox.editor.edits.materials import without_lost_groups
+from sandbox.editor.edits.names import free_ids, owner_of, rewired, taken_ids, with_springs_followed
 from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import ParticleDef, SpringDef

@@ -7,9 +7,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, checked, first_fault, subject, validated
-from sandbox.editor.edits.names import renamed, rewired, taken_ids
+from sandbox.editor.edits.names import renamed, rewired, taken_ids, with_things_followed
 from sandbox.editor.edits.remap import rebuilt
-from sandbox.editor.edits.rule_names import with_things_followed
 from sandbox.editor.items import (
     Definition,
     Item,

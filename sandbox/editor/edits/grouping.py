@@ -5,8 +5,7 @@ from typing import Literal
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_field
-from sandbox.editor.edits.names import free_ids
-from sandbox.editor.edits.rule_names import with_springs_followed
+from sandbox.editor.edits.names import free_ids, with_springs_followed
 from sandbox.editor.items import (
     PARTS,
     Definition,

@@ -1,4 +1,4 @@
-"""What joins a running world: the commands that add a part of the catalogue, or a copy of a thing, or why none can."""
+"""What joins a running world: the commands that add a part, at a size, or a copy of a thing, or why none can."""
 
 from dataclasses import fields
 from typing import Any
@@ -6,19 +6,23 @@ from typing import Any
 import numpy as np
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.adopt_dropped import keep_added_things
-from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose
+from sandbox.editor.edits.bake import keep_added_things, keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose
 from sandbox.editor.edits.copying import fragment, inserted, shifted
+from sandbox.editor.edits.moving import scale_exactly
 from sandbox.editor.edits.names import owner_of, rewired, with_owner
 from sandbox.editor.items import items_of
+from sandbox.editor.panel.field_info import fields_of
 from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.assembly.joining import Joiners
-from sandbox.level.document.model import Level, Material, ParticleDef
+from sandbox.level.document.canonical import level_text
+from sandbox.level.document.model import HydraulicDef, Level, Material, ParticleDef
 from sandbox.level.format.level_error import LevelError, one_line, shown
+from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import Description, Point, replaced
-from sandbox.level.kinds.bodies import expansion
+from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.reading.parse import parse_level
 from sandbox.session.commands import AddBody, AddParticle, Command
 
 # What of a run a copy of one of its things takes over.
@@ -28,6 +32,10 @@ SAID = frozenset(field.name for field in fields(AddParticle))
 UNSEEN = frozenset(("id", "group", "extras", "angle"))
 # What it has that does nothing while a spring holds it.
 OF_FREE_DISCS = frozenset(("rolls", "rolling", "spin"))
+
+
+# How often a quantity takes up the factor of lengths, by its unit: times stay as they are, so forces go with masses.
+POWERS = {"kg": 2, "N": 2, "N/m": 2, "N s/m": 2, "N m": 3}
 
 
 def joining_commands(part: Level, world: LevelWorld, at: Point, velocity: Point = (0.0, 0.0)) -> tuple[Command, ...]:
@@ -157,3 +165,51 @@ def _joined_to(level: Level, first: str) -> set[str]:
         more = found.union(*(link for link in links if link & found))
         grown, found = len(more) > len(found), more
     return found
+
+
+def sized(part: Level, factor: float) -> Level:
+    """A part whose lengths are `factor` times as large about its origin, as the editor scales them.
+
+    Masses go with its area, forces and torques with these, so that it drives and swings as it did, in the same time;
+    start velocities stay. Raises EditError where that is beyond a limit.
+    """
+    if factor == 1.0:
+        return part
+    scaled = scale_exactly(Document(part, frozenset(items_of(part))), factor).level
+    made = replaced(
+        scaled,
+        materials={name: _heavier(each, factor) for name, each in scaled.materials.items()},
+        bodies=tuple(_heavier(_with_masses(body, factor), factor) for body in scaled.bodies),
+        particles=tuple(_heavier(each, factor) for each in scaled.particles),
+        springs=tuple(_heavier(each, factor) for each in scaled.springs),
+    )
+    try:
+        return parse_level(level_text(made).encode(), part.name)
+    except LevelError as error:
+        raise EditError(one_line(error.faults[0])) from None
+
+
+def _with_masses(body: AnyBody, factor: float) -> AnyBody:
+    """A body that says the radius of its particles, and their masses, where these go without saying else."""
+    radius = BODY_RADIUS if body.particle_radius is None else body.particle_radius
+    more: dict[str, Any] = {}
+    if isinstance(body, MeshDef) and body.masses is None:
+        more["masses"] = (1.0,) * len(body.particles)
+    return replaced(body, particle_radius=factor * radius, **more)
+
+
+def _heavier(part: Any, factor: float) -> Any:
+    """A description with its masses and forces, and those of what it holds, for lengths this many times as large."""
+    changes: dict[str, Any] = {}
+    model: type[Description] = type(part)
+    known = fields_of(model)
+    for name, value in part.__dict__.items():
+        power = POWERS.get(known[name].unit, 0)
+        if isinstance(part, HydraulicDef) and name == "rate":
+            power = 1
+        if isinstance(value, Description):
+            changes[name] = _heavier(value, factor)
+        elif power and value is not None:
+            times = factor**power
+            changes[name] = tuple(times * each for each in value) if isinstance(value, tuple) else times * value
+    return replaced(part, **changes)

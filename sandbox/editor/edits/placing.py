@@ -3,16 +3,19 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sandbox.editor.document import Document, EditError, checked, validated
-from sandbox.editor.edits.names import free_id
-from sandbox.editor.edits.pins import pins_of, with_pins
-from sandbox.editor.edits.rule_names import with_springs_followed
+from sandbox.editor.edits.names import free_id, with_springs_followed
 from sandbox.editor.items import Item, kept_springs, with_same
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.document.model import Level, ParticleDef, SpringDef
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
+
+Mask = NDArray[np.bool_]
 
 
 def add_body(document: Document, body: AnyBody) -> Document:
@@ -138,3 +141,23 @@ def _slot(scene: Scene, name: str) -> int:
         return scene.slot(name)
     except LookupError as error:
         raise EditError(str(error.args[0])) from None
+
+
+def pins_of(body: AnyBody) -> Mask:
+    """Which particles of a body (n,) are held."""
+    return expansion(body).pinned
+
+
+def with_pins(body: AnyBody, pinned: Mask) -> AnyBody:
+    """The body with those particles (n,) held and no others; an end that was named stays so where all of it is held."""
+    named = np.zeros(len(pinned), dtype=np.bool_)
+    changes = {}
+    if "pin" in body.__dict__:
+        kept = []
+        for end in body.__dict__["pin"]:
+            held = pins_of(replaced(body, pin=(end,), pinned=(), cut=(), pose=None))
+            if np.all(pinned[held]):
+                kept.append(end)
+                named |= held
+        changes["pin"] = tuple(kept)
+    return replaced(body, pinned=tuple(np.flatnonzero(pinned & ~named).tolist()), **changes)

@@ -8,8 +8,7 @@ from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, checked, first_fault
 from sandbox.editor.edits.fields import with_tuples
-from sandbox.editor.edits.names import free_ids
-from sandbox.editor.edits.rule_names import followed
+from sandbox.editor.edits.names import followed, free_ids
 from sandbox.editor.items import chosen_bodies, chosen_particles, chosen_zones
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import shown

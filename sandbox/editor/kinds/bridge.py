@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing
-from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.kinds.editing import BodyEditing, Motion
 from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
 from sandbox.editor.tools.drawing_options import (
     LineOptions,
@@ -14,7 +13,7 @@ from sandbox.editor.tools.drawing_options import (
     material_option,
     size_option,
 )
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.bridge import BridgeDef
 

@@ -4,10 +4,9 @@ import math
 from typing import Any, ClassVar
 
 from sandbox.editor.kinds.bridge import BridgeDrawing
-from sandbox.editor.kinds.editing import BodyEditing
-from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.kinds.editing import BodyEditing, Motion
 from sandbox.editor.tools.drawing_bodies import length, rounded
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.girder import GirderDef
 

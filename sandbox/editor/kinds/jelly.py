@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from sandbox.editor.document import EditError
-from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
-from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option, sag_option
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion

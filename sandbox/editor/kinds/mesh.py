@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from sandbox.editor.kinds.editing import BodyEditing
-from sandbox.editor.kinds.motion import Motion, mapped_velocity
+from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_velocity
 from sandbox.level.kinds.mesh import MeshDef
 
 

@@ -4,8 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
-from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
@@ -16,7 +15,7 @@ from sandbox.editor.tools.drawing_options import (
     option,
     sag_option,
 )
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.limits import INFLATION_LIMIT
 from sandbox.level.kinds.body_def import BendingDef

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing, mapped_centre
-from sandbox.editor.kinds.motion import Motion
+from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, flag_option, mass_option, material_option
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.web import WebDef
 

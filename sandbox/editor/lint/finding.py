@@ -1,4 +1,4 @@
-"""Finding: one thing about a level that its maker may want to know; and rules, which look for them in slices."""
+"""Finding: one thing about a level that its maker may want to know; rules look for them, remedies mend them."""
 
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
@@ -7,15 +7,17 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.document import Document, EditError
+from sandbox.editor.document import Document, EditError, select
+from sandbox.editor.edits.deleting import delete
+from sandbox.editor.edits.fields import set_level_field, set_setting
+from sandbox.editor.edits.placing import weld
+from sandbox.editor.edits.terrain import add_terrain, with_corners
 from sandbox.editor.items import Item, Selection
-from sandbox.editor.scene import Scene
-from sandbox.level.document.model import Level
+from sandbox.editor.scene import Scene, make_scene
+from sandbox.level.document.model import ContactsDef, Level, TerrainDef
 from sandbox.physics.marks import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
-# The gravest first.
-SEVERITIES: tuple[Severity, ...] = ("error", "warning", "hint")
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 # What a rule gives: findings, and None where it has worked for long enough to let the window draw.
@@ -23,6 +25,7 @@ Rule = Iterator["Finding | None"]
 
 # Findings of one kind that are listed one by one; more of them are one line.
 LISTED = 3
+_DECIMALS = 2
 Edit = Callable[[Document], Document]
 
 
@@ -35,6 +38,10 @@ class Remedy(NamedTuple):
     label: str
     edit: Edit
     many: tuple[str, Callable[[Selection], Edit]] | None = None
+
+
+# The gravest first.
+SEVERITIES: tuple[Severity, ...] = ("error", "warning", "hint")
 
 
 @dataclass(frozen=True)
@@ -232,3 +239,44 @@ def _spans(places: Floats, part: Slots, count: int) -> tuple[Floats, Floats]:
 def _is_above(low: Floats, high: Floats, least: Floats, most: Floats) -> NDArray[np.bool_]:
     """Which of spans (k, 2) lie over another and begin no lower than it ends."""
     return np.asarray((low[:, 0] <= most[0]) & (low[:, 1] <= most[1]) & (high[:, 1] >= least[1]))
+
+
+# Ground that is drawn below everything lies so far below the lowest thing, is so thick, and reaches so far beyond [m].
+BELOW, THICKNESS, BEYOND = 0.5, 1.0, 4.0
+
+
+def deletion(items: Selection) -> Remedy:
+    """Delete items."""
+
+    def of_all(chosen: Selection) -> Callable[[Document], Document]:
+        return lambda document: delete(select(document, chosen))
+
+    return Remedy("Delete it", of_all(items), ("Delete them", of_all))
+
+
+def joint(a: str, b: str) -> Remedy:
+    """Make one of two particles."""
+    return Remedy("Join them", lambda document: weld(document, a, b))
+
+
+def draw_ground(document: Document) -> Document:
+    """Draw ground below everything, and let things touch."""
+    box = make_scene(document.level).bounds()
+    if box is None:
+        raise EditError("there is nothing to draw ground below")
+    left, right, top = box[0] - BEYOND, box[2] + BEYOND, box[1] - BELOW
+    corners = [(left, top - THICKNESS), (right, top - THICKNESS), (right, top), (left, top)]
+    rounded = [(round(x, _DECIMALS), round(y, _DECIMALS)) for x, y in corners]
+    if not document.level.has_contacts:
+        document = set_level_field(document, "contacts", ContactsDef())
+    return add_terrain(document, with_corners(TerrainDef(id="ground"), rounded, "solid"))
+
+
+GROUND = Remedy("Draw ground below", draw_ground, ("Draw ground below", lambda _: draw_ground))
+
+
+def _use_direct(document: Document) -> Document:
+    return set_setting(document, "solver", "direct")
+
+
+DIRECT = Remedy("Use the direct solver", _use_direct, ("Use the direct solver", lambda _: _use_direct))

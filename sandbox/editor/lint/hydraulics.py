@@ -7,8 +7,7 @@ import numpy as np
 from sandbox.editor.document import Document
 from sandbox.editor.edits.fields import set_field
 from sandbox.editor.items import Item
-from sandbox.editor.lint.finding import Finding, Rule, called, middle_of
-from sandbox.editor.lint.remedies import Remedy
+from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, middle_of
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level

@@ -9,17 +9,26 @@ from collections.abc import Iterator
 import numpy as np
 
 from sandbox.editor.lint.checks import checks_without_hands, hopeless_checks
-from sandbox.editor.lint.columns import buckling_columns
 from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
-from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
+from sandbox.editor.lint.finding import (
+    GROUND,
+    Finding,
+    Rule,
+    called,
+    deletion,
+    falling_particles,
+    listed,
+    middle_of,
+    place_of,
+)
 from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters
 from sandbox.editor.lint.hydraulics import hydraulics_at_another_length
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint.pools import water_in_water
-from sandbox.editor.lint.remedies import GROUND, deletion
 from sandbox.editor.lint.solver import springs_past_limits
+from sandbox.editor.lint.stacks import buckling_columns
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 

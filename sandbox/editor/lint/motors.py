@@ -3,8 +3,7 @@
 import numpy as np
 
 from sandbox.editor.items import Item
-from sandbox.editor.lint.finding import Finding, Rule, called, connected_parts, place_of
-from sandbox.editor.lint.remedies import DIRECT
+from sandbox.editor.lint.finding import DIRECT, Finding, Rule, called, connected_parts, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.kinds.wheel import WheelDef

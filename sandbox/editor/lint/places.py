@@ -6,8 +6,7 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.lint.finding import Finding, Rule, called, place_of
-from sandbox.editor.lint.remedies import joint
+from sandbox.editor.lint.finding import Finding, Rule, called, joint, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.lint.finding import Finding, Rule, called, called_spring, middle_of, place_of
-from sandbox.editor.lint.remedies import DIRECT
+from sandbox.editor.lint.finding import DIRECT, Finding, Rule, called, called_spring, middle_of, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.plan.materials import add_constraints, add_forms, coefficients

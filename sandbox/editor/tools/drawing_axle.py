@@ -12,8 +12,7 @@ from sandbox.editor.kinds.wheel import RimDrawing, RimOptions
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import known_material, length
 from sandbox.editor.tools.drawing_options import OptionInfo, flag_option, option
-from sandbox.editor.tools.drawing_tool import staged
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool, staged
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import Level
 from sandbox.level.format.actuator_defs import MotorDef

@@ -8,8 +8,7 @@ from sandbox.editor.edits.names import free_ids, taken_ids
 from sandbox.editor.items import Item
 from sandbox.editor.tools.drawing_bodies import direction, rounded
 from sandbox.editor.tools.drawing_options import Options, mass_option
-from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import Point, replaced

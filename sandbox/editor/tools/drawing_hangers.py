@@ -13,8 +13,7 @@ from sandbox.editor.items import Item
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import known_material
 from sandbox.editor.tools.drawing_options import Options, count_option, material_option
-from sandbox.editor.tools.drawing_tool import Drawing, staged
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import Drawing, EditorTool, staged
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import SpringDef
 from sandbox.level.format.quantities import replaced

@@ -3,10 +3,9 @@
 from dataclasses import dataclass, field, replace
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.parts import place_part
+from sandbox.editor.edits.copying import place_part
 from sandbox.editor.tools.drawing_options import Options, flag_option
-from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import Level
 

@@ -8,8 +8,7 @@ from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import direction, known_material
 from sandbox.editor.tools.drawing_options import OptionInfo, Options, flag_option, mass_option, material_option, option
-from sandbox.editor.tools.drawing_tool import Drawing, staged
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import Drawing, EditorTool, staged
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS

@@ -8,8 +8,7 @@ from sandbox.editor.edits.terrain import add_terrain, set_walls, with_corners
 from sandbox.editor.tools.drawing_bodies import direction, rounded
 from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
-from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import TerrainDef, WallsDef
 from sandbox.level.format.limits import BELT_LIMIT, FRICTION_LIMIT

@@ -5,14 +5,17 @@ points is a drag, or a click at each; Enter takes the pointer for the second, Es
 """
 
 import math
-from dataclasses import replace
-from typing import Any, ClassVar, Generic, cast
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Generic, Literal, cast
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.tools.drawing_options import AnyOptions, Options, changed, described
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.quantities import Point, replaced
+
+# Where the page of all shortcuts has a tool.
+Group = Literal["Draw", "Terrain"]
 
 
 class Drawing(Generic[AnyOptions]):
@@ -214,6 +217,32 @@ class Drawing(Generic[AnyOptions]):
     @staticmethod
     def _apart(a: Snap, b: Snap) -> float:
         return math.dist(a.point, b.point)
+
+
+@dataclass(frozen=True)
+class EditorTool:
+    """A tool: its name, the key that takes it up ("Shift+O"), its line on the help page and in its tip.
+
+    Its icon is the file of its name in assets/icons. drawing: what it draws with; None = it selects. word: what it is
+    called in the window, where that is not its name.
+    """
+
+    name: str
+    key: str
+    label: str
+    drawing: type[Drawing[Any]] | None = None
+    group: Group = "Draw"
+    word: str = ""
+
+    @property
+    def action(self) -> str:
+        """The action that takes it up."""
+        return f"tool_{self.name}"
+
+    @property
+    def title(self) -> str:
+        """What it is called in the window."""
+        return self.word or self.name
 
 
 def staged(document: Document, points: list[Snap]) -> tuple[Document, list[Snap]]:

@@ -3,10 +3,9 @@
 from dataclasses import dataclass, replace
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.phase_wave import muscles, wave_along
+from sandbox.editor.edits.additions import muscles, wave_along
 from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
-from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import Point
 

@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.zones import add_zone
+from sandbox.editor.edits.terrain import add_zone
 from sandbox.editor.tools.drawing_bodies import rounded
 from sandbox.editor.tools.drawing_options import Options, flag_option
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
-from sandbox.editor.tools.editor_tool import EditorTool
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import ZoneDef
 from sandbox.level.format.quantities import Point

@@ -7,9 +7,12 @@ from sandbox.editor.tools.drawing_hangers import HANGERS
 from sandbox.editor.tools.drawing_part import PART
 from sandbox.editor.tools.drawing_particles import PARTICLE, PIN, SPRING
 from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
+from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.drawing_wave import WAVE
 from sandbox.editor.tools.drawing_zone import ZONE
-from sandbox.editor.tools.selecting import LASSO, SELECT
+
+SELECT = EditorTool("select", "V", "Select and move")
+LASSO = EditorTool("lasso", "L", "Select by a lasso")
 
 # The tools by the groups that a person sees, in their order.
 TOOL_GROUPS = {

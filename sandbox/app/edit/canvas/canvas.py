@@ -36,9 +36,9 @@ from sandbox.app.draw.renderer import (
 from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
 from sandbox.app.edit.canvas.edited_zones import Areas, paint_zones
 from sandbox.app.edit.canvas.flesh import ALPHA, Flesh
+from sandbox.editor.forecast import work_for
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
-from sandbox.editor.slices import work_for
 from sandbox.level.format.limits import BODY_RADIUS
 
 # Distance of the points that the pointer snaps to, at least [pixels at scale 1].

@@ -10,8 +10,7 @@ from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
 from sandbox.app.edit.canvas.canvas import SelectionMasks
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.actuators import SceneActuators, scene_actuators
-from sandbox.editor.scene import Scene
+from sandbox.editor.scene import Scene, SceneActuators, scene_actuators
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 
 # Sizes in layout units: a badge, the shortest spring and the smallest wheel with a mark, the arrow of a motor.

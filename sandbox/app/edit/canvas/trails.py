@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, MUTED, TEXT, WARNING, Colour, mixed
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.forecast import Trail
 from sandbox.editor.items import Selection
 from sandbox.editor.range_trial import RangeTrial
-from sandbox.editor.trail import Trail
 
 Floats = NDArray[np.float64]
 

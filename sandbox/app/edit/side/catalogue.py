@@ -18,8 +18,7 @@ from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.scene import make_scene
-from sandbox.editor.storage.level_file import StorageError
-from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part
+from sandbox.editor.storage.level_file import PartFile, StorageError, catalogue, delete_part, rename_part
 from sandbox.editor.tools.drawing_part import PartDrawing
 
 # Sizes in layout units.

@@ -12,7 +12,7 @@ from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.form import Form
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.edits.rule_edits import Template, delete_rule, templates, why_not
-from sandbox.editor.firing import Firing
+from sandbox.editor.forecast import Firing
 from sandbox.editor.panel.rule_form import rule_properties
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.rules.rule import RuleDef
