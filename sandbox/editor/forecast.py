@@ -20,8 +20,8 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from sandbox.session.check_run import HeldKeys
 from sandbox.session.commands import Command
-from sandbox.session.held_keys import HeldKeys
 from sandbox.session.session import Session
 
 Floats = NDArray[np.float64]

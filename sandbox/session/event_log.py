@@ -12,9 +12,9 @@ from typing import Any, assert_never
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level, ZoneDef
-from sandbox.level.rules.action import ActionDef
+from sandbox.level.rules.rule import ActionDef
 from sandbox.level.things.contacts import ContactListener
 from sandbox.level.things.names import ThingNames, thing_of, thing_of_spring
 from sandbox.physics.analysis.query import shown_particles

@@ -11,13 +11,13 @@ from contextlib import suppress
 from typing import Any
 
 import pytest
-from sandbox.level.rules.player_limits import PlayerLimits
 
 from sandbox import load_level
 from sandbox.commands import COMMAND_TYPES, CommandError, apply, from_record
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import read_level, shipped_levels
+from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.level.rules.rule import RuleDef
 from sandbox.page.start import is_done_by_pages
 from sandbox.physics.commands.command_table import KINDS

@@ -3,11 +3,11 @@
 import json
 
 import pytest
-from sandbox.level.rules.player_limits import DEEDS, MEANINGS
 
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.parse import parse_level
+from sandbox.level.rules.player_limits import DEEDS, MEANINGS
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import COMMAND_TYPES, AddParticle, CommandError, CutSprings, Grab, Pin, SetGravity, Unpin
 from sandbox.session.commands.records import ScriptLine

@@ -10,7 +10,7 @@ from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.bake import keep_coefficients
 from sandbox.editor.edits.fields import set_setting
-from sandbox.editor.edits.retime import set_rate_in_pace
+from sandbox.editor.edits.materials import set_rate_in_pace
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, ContactsDef, Level
 from sandbox.level.format.quantities import replaced
 from sandbox.physics.world import World

@@ -9,7 +9,7 @@ from sandbox.cli.base.inputs import Refused
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 if TYPE_CHECKING:
-    from sandbox.level.assembly.level_world import LevelWorld
+    from sandbox.level.assembly.build_world import LevelWorld
     from sandbox.physics.world import World
     from sandbox.session.compare.comparison import Comparison
     from sandbox.session.player.page import Watched

@@ -10,7 +10,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.expansion import Expansion
-from sandbox.level.plan.plan import Plan, Slots
+from sandbox.level.plan.plan import Plan
 from sandbox.physics.arrays import Slots
 from sandbox.physics.driving import Actuators, Hydraulics, Motors, Muscles
 from sandbox.physics.world import World

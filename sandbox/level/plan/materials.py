@@ -12,7 +12,6 @@ from sandbox.level.plan.plan import Layout
 from sandbox.physics.arrays import Slots
 from sandbox.physics.breaking import NEVER, StrainLimits
 from sandbox.physics.constraints import AREA, BEND, TRIANGLE
-from sandbox.physics.driving import NEVER, StrainLimits
 from sandbox.physics.keeping.equipment import FirmBody, Firmness
 from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN, OWN_MATERIAL
 from sandbox.physics.softness.firmness import give_firmness, lowest_mode_of

@@ -12,10 +12,8 @@ from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import NO_HULL, Expansion
 from sandbox.level.kinds.wheel import WheelDef
-from sandbox.level.plan.surfaces import free_wheels
 from sandbox.physics.arrays import FloatRows, SlotRows
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.driving import Surface
 from sandbox.physics.keeping.equipment import Surface
 from sandbox.physics.marks import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
