@@ -14,7 +14,6 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from sandbox.level.rules.player_limits import DEEDS
 
 import sandbox
 from sandbox.app.draw import scene, textures
@@ -36,6 +35,7 @@ from sandbox.level.format.look import BALLS, GROUNDS, LINES, SKINS
 from sandbox.level.kinds.bodies import KINDS as BODY_KINDS
 from sandbox.level.kinds.jelly import SHAPES
 from sandbox.level.plan import rules
+from sandbox.level.rules.player_limits import DEEDS
 from sandbox.level.rules.rule import ASKS, DOES, GROUPS, UNASKED, Sound
 from sandbox.page import start
 from sandbox.page.bundle import WEB

@@ -4,10 +4,10 @@ import math
 
 import pygame
 import pytest
-from sandbox.level.rules.player_limits import PlayerLimits
 
 from sandbox.app.play.toolbar import NAMES, refused_tools
 from sandbox.level.format.quantities import replaced
+from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.physics.meshing.fitting import CROSSES
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, CutSprings, Pin, Remove, ScaleMass, SetFirmness

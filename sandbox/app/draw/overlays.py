@@ -11,7 +11,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import Colour, Theme, packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.things.level_slots import Frame, Seen
-from sandbox.editor.zone_outline import outline_of as zone_outline
+from sandbox.editor.scene import outline_of as zone_outline
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.analysis.energy import spring_forces

@@ -7,9 +7,16 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.run.playback import RAMP_TIME, Playback
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.adopt_dropped import keep_added
-from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose, keep_settings
-from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.editor.edits.bake import (
+    keep_added,
+    keep_coefficients,
+    keep_cuts,
+    keep_masses,
+    keep_pins,
+    keep_pose,
+    keep_settings,
+)
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.session.commands import SetSolver
 from sandbox.session.scene import RunScene
 

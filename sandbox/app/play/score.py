@@ -15,7 +15,7 @@ from sandbox.app.widgets.texts import line_height, shortened, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
 from sandbox.level.document.model import Level
-from sandbox.level.rules.hands import left_of
+from sandbox.level.rules.player_limits import left_of
 from sandbox.level.rules.rule import has_clock
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.outcome import Outcome

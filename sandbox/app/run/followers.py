@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.base.sentences import sentence
 from sandbox.level.document.model import Level
-from sandbox.level.rules.action import ActionDef
+from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.analysis.stability import stability_shares
 from sandbox.physics.sanitise import Containment
