@@ -7,11 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.contracts.application import Editing
+from sandbox.app.panel.softness_reading import MEASURING, SoftnessReading
+from sandbox.app.run.playback import Playback
 from sandbox.editor.edits.bake import begin_at_rest
 from sandbox.editor.forecast import Deeds, Firing, Forecast, Trail, deeds_of
 from sandbox.editor.lint.lint import Finding, findings
 from sandbox.editor.range_trial import RangeTrial
 from sandbox.level.document.model import Level
+from sandbox.physics.softness.firmness import LARGEST_READ
 from sandbox.session.session import Session
 
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
@@ -40,6 +43,9 @@ class Watch:
         self._deeds: tuple[Deeds, int] | None = None
         # Values of a number that are tried.
         self.range_trial: RangeTrial | None = None
+        # How soft play says that a body is; None: not asked for of the level as it is now, or it cannot be played.
+        self._softness: SoftnessReading | None = None
+        self._said = ""
         self._level: Level | None = None
         self._since = 0.0
         self._lint: Iterator[Finding | None] | None = None
@@ -113,7 +119,27 @@ class Watch:
 
     def let_go(self) -> None:
         """Drop all that can be worked out again, while another screen is shown."""
-        self.trail = self.last_trail = self.range_trial = self.forecast = self._lint = self._level = self.firing = None
+        self.trail = self.last_trail = self.range_trial = self.forecast = self._lint = self._level = self.firing = (
+            self._softness
+        ) = None
+
+    def softness_of(self, body: str) -> str:
+        """How soft play says that a body is: a word and its sag; "" where that cannot be told."""
+        screen = self._screen
+        if screen.document.level is not self._level or self._since < PATIENCE:
+            return MEASURING
+        if self._softness is None:
+            if len(screen.scene.position) > LARGEST_READ:
+                return ""
+            self._softness = SoftnessReading(Playback(self._level))
+        if self._softness.body != body:
+            self._softness.body, self._said = body, MEASURING
+        if body not in self._softness.bodies:
+            return ""
+        said = self._softness.read(SLICE, look=False)
+        if said is not None:
+            self._said = f"{said.word}, {said.sag} %" if said.word else MEASURING if said.text == MEASURING else ""
+        return self._said
 
     def remember(self, run: Session) -> None:
         """Show where things went in a run of the level, beside where they will go, and when its rules fired."""
@@ -135,6 +161,7 @@ class Watch:
             is_waiting
             or is_firing
             or self._lint is not None
+            or (self._softness is not None and self._softness.is_measuring)
             or is_drawing
             or (forecast is not None and not self._is_told)
         )
@@ -144,7 +171,8 @@ class Watch:
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
-            self._lint = self.forecast = self.trail = self.firing = None
+            self._lint = self.forecast = self.trail = self.firing = self._softness = None
+            self._said = ""
         if self.range_trial is not None and not self.range_trial.is_done:
             self.range_trial.advance(TRYING)
         before, self._since = self._since, self._since + frame_time

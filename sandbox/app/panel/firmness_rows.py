@@ -2,59 +2,38 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, replace
-from typing import NamedTuple
+from dataclasses import asdict
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sandbox.app.base.sag_map import Pairs, subject_words, word_pairs
 from sandbox.app.base.sentences import capitalised
-from sandbox.app.panel.readings import motion_words, per_cent, sag_words
+from sandbox.app.panel.readings import per_cent
+from sandbox.app.panel.softness_reading import ALL_BODIES, SoftnessReading
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.button import Choice
-from sandbox.app.widgets.field import DASH, MIXED, Field, typed_number
+from sandbox.app.widgets.field import Field, typed_number
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.document import EditError
 from sandbox.editor.panel.field_info import FieldInfo
-from sandbox.editor.panel.material_properties import NO_FREQUENCY, Swing
-from sandbox.editor.panel.property import MIXED as MIXED_VALUE
-from sandbox.editor.panel.property import Property, in_range, same
+from sandbox.editor.panel.material_properties import NO_FREQUENCY
+from sandbox.editor.panel.property import Property, in_range
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
-from sandbox.level.format.quantities import significant
 from sandbox.physics import jit
-from sandbox.physics.analysis.stability import BOUND, spring_loads
-from sandbox.physics.arrays import Floats
 from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.body_motion import (
-    BodyMotion,
-    SagCurve,
-    SpringMotion,
-    common_pair,
-    present_coefficients,
     read_body,
-    word_for,
 )
 from sandbox.physics.softness.firmness import WORDS, FirmnessRange, OutOfReach
-from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeter, SagMeters, measured_bodies
-from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeter
 from sandbox.session.commands import SetCoefficients, SetFirmness
 
-ALL_BODIES = "All bodies"
 # Seconds of work on what is measured: in a frame; in one while somebody waits for it; and at once.
 WORK, HASTE, AT_ONCE = 0.006, 0.02, 0.1
 # What is reached of an asked sag within this share is as asked.
 AS_ASKED = 0.1
 # What is so many times as much or as little as asked is not set in its place.
 FAR = 10.0
-TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
-# Significant digits of a sag.
-DIGITS = 2
 
 
-# Of a wobble.
-SWING_DIGITS = 3
 _WOBBLE = FieldInfo(
     "number", "Wobble", "Hz", *FREQUENCY_RANGE, tooltip="Swings a second of the body's slowest wobble, undamped."
 )
@@ -63,16 +42,7 @@ _RATIO = FieldInfo(
 )
 
 
-class Reading(NamedTuple):
-    """What is shown of a body: its sag, None: not measured yet, NaN: it cannot be; its wobble, None: it has none."""
-
-    subject: MeasuredBody
-    sag: float | None
-    motion: SpringMotion | None
-    is_rigid: bool
-
-
-class FirmnessRows:
+class FirmnessRows(SoftnessReading):
     """What the rows show and do; the panel builds them, where `shown`, and `engineers`' further down.
 
     Bodies that are large are left to the level's field and the command.
@@ -84,30 +54,14 @@ class FirmnessRows:
     sag: Field
 
     def __init__(self, playback: Playback, say: Callable[[str], None]) -> None:
-        self.playback, self._say = playback, say
-        self.body = ALL_BODIES
-        self._find_bodies()
+        super().__init__(playback)
+        self._say = say
         # A panel that was laid out without bodies has no rows.
         self.shown = bool(self._subjects)
-        self._shown_of: tuple[object, ...] = ()
-        self._meters = SagMeters()
         # Sags that were asked for and are looked for, by the name of the body, and the gesture that asked.
         self._asked: dict[str, tuple[float, int]] = {}
         # Those of them that have about that by now.
         self._answered: set[str] = set()
-        self._seen: dict[str, object] = {}
-        # Frequency [Hz] and damping ratio of the chosen bodies' slowest wobble.
-        self.swing: Swing = (None, None)
-
-    @property
-    def bodies(self) -> list[str]:
-        """Names of the bodies whose firmness can be set here."""
-        return list(self._subjects)
-
-    def _find_bodies(self) -> None:
-        self._subjects = measured_bodies(self.playback.session.world)
-        if self.body not in self._subjects:
-            self.body = ALL_BODIES
 
     def offer_bodies(self) -> None:
         """Let the menu offer what there is at the moment: bodies join a run, and go again."""
@@ -126,153 +80,22 @@ class FirmnessRows:
         self.body = name
         self.refresh(True)
 
-    def material_of(self, name: str) -> int | None:
-        """The material (index) of a body's springs; None: of all bodies, or of none that is known."""
-        subject = self._subjects.get(name)
-        return None if subject is None else int(self.playback.session.world.material[subject.body.springs[0]])
-
-    def body_at(self, particle: int) -> str | None:
-        """The name of the body of which a particle is; None: of none that is offered."""
-        world = self.playback.session.world
-        for name, subject in self._subjects.items():
-            springs = subject.body.springs
-            if particle in world.particle_a[springs] or particle in world.particle_b[springs]:
-                return name
-        return None
-
-    def springs_of(self, name: str) -> NDArray[np.bool_]:
-        """The springs (m,) of a body, or of all."""
-        chosen = np.zeros(self.playback.session.world.spring_count, np.bool_)
-        for subject in self._subjects.values() if name == ALL_BODIES else [self._subjects[name]]:
-            chosen[subject.body.springs] = True
-        return chosen
-
-    def body_of(self, material: int | None) -> str | None:
-        """The body that stands for a material: the chosen one, else the largest of the material."""
-        if self.body in self._subjects and material in (None, self.material_of(self.body)):
-            return self.body
-        names = [name for name in self._subjects if material in (None, self.material_of(name))]
-        return max(names, key=lambda name: len(self._subjects[name].body.springs), default=None)
-
-    def curve_of(self, material: int | None) -> SagCurve | None:
-        """How a body sags at every firmness, as far as runs have told by now; what is missing is asked for."""
-        name = self.body_of(material)
-        meter = None if name is None else self._meter(self._subjects[name])
-        if meter is None:
-            return None
-        meter.trace()
-        return meter.curve
-
-    def motion_of(self, name: str) -> BodyMotion | None:
-        """How a body sags and wobbles by its Cs and Cd, as far as runs have told by now; None: not known."""
-        world, subject = self.playback.session.world, self._subjects[name]
-        meter = self._meter(subject)
-        curve = None if meter is None else meter.curve
-        if curve is None and subject.slot is None:
-            return None
-        # A net moves as its springs do.
-        motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
-        return replace(motion, curve=curve)
-
-    def word_pairs(self, name: str, body: BodyMotion) -> Pairs:
-        """Cs and Cd of each word for a body, where runs have told."""
-        meter = self._meter(self._subjects[name])
-        return {} if meter is None or meter.curve is None else word_pairs(meter, body)
-
-    def subject_of(self, name: str) -> str:
-        """The part of a body that the words are about, as a sentence has it: "the girder's end"."""
-        return subject_words(name, self._meters.of(self.playback.session.world, self._subjects[name]).body.support)
-
     def refresh(self, look: bool) -> None:
         """Show what the bodies have now; look: also where no command of the person's has changed them."""
         if not self.shown:
             return
         if self._asked:
             self._settle(HASTE)
-        news = self._meters.advance(HASTE if self._is_waited_for() else WORK)
-        key = (self.playback.revision, self.body, jit.COMPILED)
-        if key == self._shown_of and not look and not news:
-            return
-        self._shown_of = key
-        present = present_coefficients(self.playback.session.world)
-        found = [self._read(subject, present) for subject in self._chosen()]
-        readings = [reading for reading in found if reading is not None]
-        sags = [reading.sag for reading in readings if reading.sag is not None and math.isfinite(reading.sag)]
-        whole = len(readings) == len(found) and len(sags) == len(readings) and bool(found)
-        self.sag.show(self._one([per_cent(sag, DIGITS).removesuffix(" %") for sag in sags], whole))
-        motions = [reading.motion for reading in readings if reading.motion is not None]
-        whole_swing = len(motions) == len(found) and bool(found)
-        pairs = [[significant(value, SWING_DIGITS) for value in (each.hz, each.ratio)] for each in motions]
-        hz, ratio = (
-            None if not pairs else same([pair[place] for pair in pairs]) if whole_swing else MIXED_VALUE
-            for place in (0, 1)
-        )
-        self.swing = hz, ratio
-        words = {word_for(each.sag, each.is_rigid) for each in readings if each.sag is not None}
-        explodes = self._may_explode()
-        self.words.show(words.pop() if whole and len(words) == 1 and not explodes else "")
-        self.text.show_text(TOO_STIFF if explodes else self._text(readings, sags, whole))
+        said = self.read(HASTE if self._is_waited_for() else WORK, look)
+        if said is not None:
+            self.sag.show(said.sag)
+            self.words.show(said.word)
+            self.text.show_text(said.text)
 
     @property
     def is_measuring(self) -> bool:
         """Whether something that was asked for is not set yet, or runs still tell of the bodies."""
-        return bool(self._asked or self._meters.busy)
-
-    def _is_waited_for(self) -> bool:
-        return not self._shown_of or self.text.text.startswith("Measuring")
-
-    def _may_explode(self) -> bool:
-        """Whether springs of a chosen body are past what a single pass is proven to bear."""
-        world = self.playback.session.world
-        if not SOLVERS[world.settings.solver].proven_limit:
-            return False
-        loads = spring_loads(world)
-        return any(bool(np.any(loads[subject.body.springs] >= BOUND)) for subject in self._chosen())
-
-    def _one(self, texts: list[str], whole: bool) -> str:
-        return DASH if not texts else texts[0] if whole and len(set(texts)) == 1 else MIXED
-
-    def _text(self, readings: list[Reading], sags: list[float], whole: bool) -> str:
-        if not self._chosen():
-            return "There is no body here whose firmness can be set."
-        if not readings:
-            return "The springs of a body differ in Cs or Cd."
-        if any(reading.sag is None for reading in readings) and jit.COMPILED:
-            return "Measuring how far it sags ..."
-        if not sags:
-            return "How far it sags cannot be measured here: it does not come to rest, or is too large."
-        world = self.playback.session.world
-        supports = {self._meters.of(world, reading.subject).body.support for reading in readings}
-        name = readings[0].subject.name if len(readings) == 1 else None
-        sag = sag_words(min(sags), max(sags), name, supports)
-        motions = {motion_words(reading.motion) for reading in readings if reading.motion is not None}
-        return f"{sag}; {motions.pop()}." if whole and len(motions) == 1 else f"{sag}."
-
-    # Measuring.
-
-    def _meter(self, subject: MeasuredBody) -> SagMeter | None:
-        """The meter of a body; None while kernels are interpreted, which takes too long."""
-        return self._meters.of(self.playback.session.world, subject) if jit.COMPILED else None
-
-    def _read(self, subject: MeasuredBody, present: tuple[Floats, Floats]) -> Reading | None:
-        """The reading of a body that the rows show; None where its springs differ."""
-        world = self.playback.session.world
-        pair, meter = common_pair(world, subject.body), self._meter(subject)
-        if pair is None:
-            return None
-        found = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode, present)
-        motion = None if found is None else found.motion
-        is_rigid = pair[:2] == (1.0, 1.0)
-        if meter is None:
-            return Reading(subject, None if found is None else found.sag, motion, is_rigid)
-        # What changes from tick to tick is not measured again each time.
-        is_steady, self._seen[subject.name] = self._seen.get(subject.name) in (None, pair), pair
-        sag = meter.sag_known(pair)
-        if sag is None and is_steady:
-            sag = meter.sag(pair)
-        if sag is None:
-            sag = meter.estimate(pair)
-        return Reading(subject, sag, motion, is_rigid)
+        return bool(self._asked) or super().is_measuring
 
     # Changing.
 
@@ -366,9 +189,6 @@ class FirmnessRows:
         if any(self._kept(subject)[0] is None for subject in self._chosen()):
             raise EditError(NO_FREQUENCY)
         self._set(lambda subject: Firmness(hz=self._kept(subject)[0], ratio=ratio))
-
-    def _chosen(self) -> list[MeasuredBody]:
-        return list(self._subjects.values()) if self.body == ALL_BODIES else [self._subjects[self.body]]
 
     def _kept(self, subject: MeasuredBody) -> tuple[float | None, float | None]:
         """Frequency [Hz] and damping ratio that a body has now, to be set again; None where it has none."""
