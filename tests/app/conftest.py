@@ -289,7 +289,7 @@ def documents(tmp_path, monkeypatch):
         "sandbox.app.draw.picture_cache.platformdirs.user_cache_dir", lambda *_, **__: str(tmp_path / "cache")
     )
     # The system asks for the dark theme, which pictures and colours of these tests are of.
-    monkeypatch.setattr("sandbox.app.settings.system_theme._is_dark", lambda: True)
+    monkeypatch.setattr("sandbox.app.settings.chosen._is_dark", lambda: True)
     return tmp_path / "Spring Sandbox"
 
 

@@ -11,7 +11,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import BACKGROUND
 from sandbox.app.edit.actions import MENU
 from sandbox.app.edit.canvas.canvas import PLAIN_FROM, ScenePainter, SelectionMasks
-from sandbox.app.edit.canvas.handles import Handles
+from sandbox.app.edit.canvas.gestures import Handles
 from sandbox.editor.scene import make_scene
 from tests.app.conftest import small_level
 

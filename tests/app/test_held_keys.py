@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.settings.key_row import KeyRow
+from sandbox.app.settings.settings_sheet import KeyRow
 from sandbox.level.reading.files import load_level
 
 CTRL = pygame.KMOD_CTRL

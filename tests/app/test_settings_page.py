@@ -9,9 +9,8 @@ import pytest
 from sandbox.app.base.shortcuts import action_of, combination_of, shortcuts, use_keys, with_keys
 from sandbox.app.draw.colours import BACKGROUND, show_theme, shown_theme
 from sandbox.app.draw.renderer import FULL, NO_EFFECTS
-from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
-from sandbox.app.settings.key_row import KeyRow
-from sandbox.app.settings.system_theme import theme_of
+from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf, theme_of
+from sandbox.app.settings.settings_sheet import KeyRow
 from sandbox.app.widgets.widget import Widget
 from sandbox.editor.storage.preferences import (
     preference,
@@ -110,11 +109,9 @@ def test_every_setting_takes_its_values_and_no_others():
      ("darwin", "Dark\n", "dark"), ("darwin", "", "light"), ("plan9", "dark", "light")],
 )  # fmt: skip
 def test_the_theme_is_light_unless_the_system_says_dark(monkeypatch, platform, answer, theme):
-    monkeypatch.setattr("sandbox.app.settings.system_theme.sys.platform", platform)
-    monkeypatch.setattr("sandbox.app.settings.system_theme.shutil.which", lambda name: name)
-    monkeypatch.setattr(
-        "sandbox.app.settings.system_theme.subprocess.run", lambda *_, **__: SimpleNamespace(stdout=answer)
-    )
+    monkeypatch.setattr("sandbox.app.settings.chosen.sys.platform", platform)
+    monkeypatch.setattr("sandbox.app.settings.chosen.shutil.which", lambda name: name)
+    monkeypatch.setattr("sandbox.app.settings.chosen.subprocess.run", lambda *_, **__: SimpleNamespace(stdout=answer))
     assert theme_of("system") == theme
 
 

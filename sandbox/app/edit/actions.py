@@ -3,26 +3,28 @@
 import math
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Literal
 
+from sandbox.app.base.sentences import capitalised, sentence
 from sandbox.app.base.shortcuts import shortcuts, tip_of
 from sandbox.app.contracts.application import Application, Editing
 from sandbox.app.draw.camera import Box
 from sandbox.app.draw.looks import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
-from sandbox.app.edit.part_keeping import ask_to_keep_part
 from sandbox.app.widgets.dialogs import ask, choose, choose_row, fill_in
 from sandbox.app.widgets.rows import Row
-from sandbox.editor.document import Document
+from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.additions import wave_in_order
-from sandbox.editor.edits.copying import array_circle, array_line, duplicate
+from sandbox.editor.edits.copying import array_circle, array_line, duplicate, part_of
 from sandbox.editor.edits.deleting import break_apart, delete
 from sandbox.editor.edits.grouping import group, reorder, ungroup
 from sandbox.editor.edits.moving import align, distribute, mirror
 from sandbox.editor.edits.placing import unweld
-from sandbox.editor.items import Item
+from sandbox.editor.items import Item, chosen_definitions
 from sandbox.editor.pick import items_of_material
+from sandbox.editor.storage.level_file import StorageError, keep_part
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import PLACE_DECIMALS
 
@@ -440,3 +442,31 @@ def _visit(screen: Editing, by: int) -> None:
     start = (chosen[-1] if by > 0 else chosen[0]) if chosen else (-1 if by > 0 else 0)
     item: Item = items[(start + by) % len(items)]
     screen.select(frozenset({item}))
+
+
+def ask_to_keep_part(screen: Editing) -> None:
+    """Ask for the name of a part, and write it."""
+    document = screen.document
+    if not document.selection:
+        screen.say("Select what the part consists of first.")
+        return
+    names = {getattr(part, "group", None) for part in chosen_definitions(document.level, document.selection)}
+    one = names.pop() if len(names) == 1 else None
+    first = chosen_definitions(document.level, document.selection)[0]
+    kept: list[Path] = []
+    suggestion: str = one or getattr(first, "id", None) or "Part"
+
+    def answer(typed: str) -> str | None:
+        try:
+            path = keep_part(part_of(document, typed))
+        except (EditError, StorageError) as error:
+            return sentence(error)
+        kept.append(path)
+        return None
+
+    def show(typed: str) -> None:
+        screen.say(f"{typed} is in the catalogue now, under Your own parts.")
+        screen.show_parts(kept[-1])
+
+    hint = "The selection becomes a part that you can use in all your levels."
+    ask(screen.ui, "Keep as a part", hint, capitalised(suggestion), "Keep", answer, then=show)

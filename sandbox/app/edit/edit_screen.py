@@ -16,15 +16,13 @@ from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace
 from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing, union
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
 from sandbox.app.edit.actions import edit_actions
-from sandbox.app.edit.bar import Bar, Palette, palette_width
+from sandbox.app.edit.bar import Bar, Palette, open_context_menu, palette_width
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
 from sandbox.app.edit.canvas.overlay import draw_snap
 from sandbox.app.edit.canvas.picking import PickTool
 from sandbox.app.edit.canvas.pointer import CLICK_REACH, DrawTool, SelectTool
-from sandbox.app.edit.canvas.rulers import RULER, Rulers
-from sandbox.app.edit.canvas.view import View
+from sandbox.app.edit.canvas.view import RULER, Rulers, View
 from sandbox.app.edit.clipboard import Clipboard
-from sandbox.app.edit.context_menu import open_context_menu
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch

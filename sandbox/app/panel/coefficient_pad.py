@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.base.sag_map import PLAIN, WORD_SHARE, CoefficientScale, SagMap
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.panel.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
-from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
+from sandbox.app.panel.sweeps.sweep_layer import SweepLayer, limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui

@@ -16,8 +16,7 @@ from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows, PanelSection
 from sandbox.app.panel.play_rows import PlayRows
 from sandbox.app.panel.readings import number, stability_words
-from sandbox.app.panel.sweeps.pad_maps import PadMaps
-from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
+from sandbox.app.panel.sweeps.pad_sweeps import PadMaps, PadSweeps
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.field import DASH, MIXED, typed_number

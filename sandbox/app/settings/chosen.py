@@ -3,14 +3,26 @@
 To add one: a line in SETTINGS; whoever obeys it reads `Chosen`.
 """
 
+import shutil
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from sandbox.app.draw.colours import ThemeName
 from sandbox.editor.storage.preferences import preferences, set_aside_broken, set_preferences
 
 # A value and the words for it.
 Option = tuple[str, str]
+# Sizes of the widgets that can be chosen, in pixels for a layout unit.
+SCALES = (0.5, 4.0)
+# Longest wait [s] for the program that knows.
+PATIENCE = 1.0
+_QUESTIONS = {
+    "darwin": ("defaults", "read", "-g", "AppleInterfaceStyle"),
+    "linux": ("gsettings", "get", "org.gnome.desktop.interface", "color-scheme"),
+}
 
 
 @dataclass(frozen=True)
@@ -57,10 +69,6 @@ class Amount:
 
 
 Setting = OneOf | Amount
-
-# Sizes of the widgets that can be chosen, in pixels for a layout unit.
-SCALES = (0.5, 4.0)
-
 SETTINGS: tuple[Setting, ...] = (
     OneOf("theme", "Theme", "Look", (("system", "As the system"), ("light", "Light"), ("dark", "Dark")),
           "Some levels set their own"),
@@ -126,3 +134,31 @@ class Chosen:
             return {name: tuple(keys) for name, keys in read.items()}
         self.faults.append("preferences.json: keys: not a list of keys for each action; the defaults apply.")
         return {}
+
+
+def theme_of(chosen: str) -> ThemeName:
+    """The theme that is meant by what was chosen: "dark", "light" or "system"; light where the system says nothing."""
+    if chosen == "system":
+        return "dark" if _is_dark() else "light"
+    return "dark" if chosen == "dark" else "light"
+
+
+def _is_dark() -> bool:
+    if sys.platform == "win32":
+        import winreg
+
+        place = r"Software\Microsoft\Windows\CurrentVersion\Themes\Personalize"
+        try:
+            with winreg.OpenKey(winreg.HKEY_CURRENT_USER, place) as key:
+                return not winreg.QueryValueEx(key, "AppsUseLightTheme")[0]
+        except OSError:
+            return False
+    question = _QUESTIONS.get(sys.platform)
+    if question is None or shutil.which(question[0]) is None:
+        return False
+    try:
+        asked = subprocess.run(question, capture_output=True, text=True, timeout=PATIENCE, check=False)
+    except (OSError, subprocess.SubprocessError):
+        return False
+    # On macOS the light one has no name.
+    return "dark" in asked.stdout.casefold()

@@ -13,8 +13,7 @@ from sandbox.app.draw.colours import MUTED, show_theme
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.stage import Stage
 from sandbox.app.run.playback import Playback
-from sandbox.app.settings.chosen import Chosen
-from sandbox.app.settings.system_theme import theme_of
+from sandbox.app.settings.chosen import Chosen, theme_of
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.toy.toy_window import ToyWindow
 from sandbox.app.widgets.fonts import plain_font

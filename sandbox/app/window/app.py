@@ -28,9 +28,8 @@ from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, RunProgress, StatusLine
 from sandbox.app.run.keeping import BestKeeping, SceneKeeping
 from sandbox.app.run.playback import Playback
-from sandbox.app.settings.chosen import Chosen
+from sandbox.app.settings.chosen import Chosen, theme_of
 from sandbox.app.settings.settings_sheet import SettingsSheet
-from sandbox.app.settings.system_theme import theme_of
 from sandbox.app.share.page import LinkCopying, SharePage
 from sandbox.app.share.sharing import Sharing
 from sandbox.app.sound.sounds import Sounds

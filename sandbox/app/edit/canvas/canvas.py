@@ -20,11 +20,14 @@ from sandbox.app.draw.colours import (
     PINNED,
     WELD,
     Colour,
+    Theme,
     mixed,
     packed,
+    theme_now,
 )
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.looks import material_colours
+from sandbox.app.draw.raster.painter import Painter
 from sandbox.app.draw.renderer import (
     CROWDED,
     DENSITY,
@@ -33,9 +36,10 @@ from sandbox.app.draw.renderer import (
     SPRING_WIDTH,
     THINNEST_SPRING,
 )
-from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
-from sandbox.app.edit.canvas.edited_zones import Areas, paint_zones
-from sandbox.app.edit.canvas.flesh import ALPHA, Flesh
+from sandbox.app.draw.textures import Tiles
+from sandbox.app.draw.things.drawables import Drawables
+from sandbox.app.draw.things.level_slots import Frame, LevelSlots, level_slots_of
+from sandbox.app.edit.canvas.edited_shapes import Areas, Ground, paint_ground, paint_walls, paint_zones
 from sandbox.editor.forecast import work_for
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
@@ -52,7 +56,7 @@ CLOSEST_LINES = 6.0
 GHOST_SHARE = 0.45
 HIGHLIGHT_WIDTH = 2.4
 # A preview of more particles and springs shows its springs alone: it is another one with every move of the pointer.
-GHOST_FLESH = 600
+GHOST_FILL = 600
 # Springs and particles over what they look like are so much thinner.
 FINE = 0.55
 # Discs that are larger than this [pixels at scale 1] are not painted over.
@@ -62,15 +66,19 @@ CHUNK = 2_000
 SLICE = 0.006
 # Particles that would be smaller than this [pixels] are left out of the plain picture.
 SMALLEST_PLAIN = 1.0
-
 Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+# Scenes of more particles and springs than this show their springs alone: each edit makes all of it again.
+MOST_FILLED = 4_000
+# How much of it shows, of 255.
+FILL_ALPHA = 190
 
 
 @dataclass(frozen=True)
 class Part:
     """Particles and springs of a scene to draw; tint: in place of their own colours; ghost: pale.
 
-    has_flesh: what they look like is drawn below them; they are thin, or where they have a tint large discs are rings.
+    is_filled: what they look like is drawn below them; they are thin, or where they have a tint large discs are rings.
     """
 
     scene: Scene
@@ -78,12 +86,12 @@ class Part:
     springs: Mask
     tint: Colour | None = None
     ghost: bool = False
-    has_flesh: bool = False
+    is_filled: bool = False
 
     @property
     def thinness(self) -> float:
-        """How thin they are beside what is drawn without flesh."""
-        return FINE if self.has_flesh and self.tint is None else 1.0
+        """How thin they are beside what is drawn without fill."""
+        return FINE if self.is_filled and self.tint is None else 1.0
 
 
 class SelectionMasks(NamedTuple):
@@ -118,7 +126,7 @@ class ScenePainter:
         self.lattice = True
         # The distance [m] of grid lines; None: it goes by the zoom.
         self.grid_step: float | None = None
-        self._flesh, self._ghost_flesh = Flesh(), Flesh()
+        self._fill, self._ghost_fill = FillPreview(), FillPreview()
         self._layer: pygame.Surface | None = None
         self._scene: Scene | None = None
         self._key: tuple[object, ...] = ()
@@ -179,21 +187,21 @@ class ScenePainter:
         away = springs | hanging_springs(scene, particles) if hidden else springs
         # What moves is drawn elsewhere.
         shown = ~((particles & hidden) | chosen.hidden_particles), ~((away & hidden) | chosen.hidden_springs)
-        alpha = ALPHA if self.lattice else OPAQUE
-        has_flesh = self._flesh.paint(layer, camera, scene, *shown, self.scale, self.compiled, alpha)
-        if self.lattice or not has_flesh:
-            others = Part(scene, shown[0] & ~particles, shown[1] & ~away, has_flesh=has_flesh)
+        alpha = FILL_ALPHA if self.lattice else OPAQUE
+        is_filled = self._fill.paint(layer, camera, scene, *shown, self.scale, self.compiled, alpha)
+        if self.lattice or not is_filled:
+            others = Part(scene, shown[0] & ~particles, shown[1] & ~away, is_filled=is_filled)
             yield from self._slices(layer, camera, others, plain)
         if not hidden:
-            yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT, has_flesh=has_flesh), plain)
+            yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT, is_filled=is_filled), plain)
 
     def paint_ghost(self, surface: pygame.Surface, camera: Camera, part: Part) -> None:
         """Draw a preview, pale, and where it is small as what it will be."""
-        is_small = int(np.count_nonzero(part.particles) + np.count_nonzero(part.springs)) <= GHOST_FLESH
-        has_flesh = is_small and self._ghost_flesh.paint(
+        is_small = int(np.count_nonzero(part.particles) + np.count_nonzero(part.springs)) <= GHOST_FILL
+        is_filled = is_small and self._ghost_fill.paint(
             surface, camera, part.scene, part.particles, part.springs, self.scale, self.compiled
         )
-        self.paint(surface, camera, replace(part, ghost=True, has_flesh=has_flesh))
+        self.paint(surface, camera, replace(part, ghost=True, is_filled=is_filled))
 
     def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: SelectionMasks) -> None:
         """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
@@ -284,7 +292,7 @@ class ScenePainter:
         radii = np.where(own <= BODY_RADIUS, np.minimum(radii, max(smallest, crowded)), radii)
         radii = radii * part.thinness
         is_large = (own > BODY_RADIUS) & (own * camera.zoom > LARGE * self.scale)
-        if part.has_flesh and is_large.any():
+        if part.is_filled and is_large.any():
             self._paint_large(canvas, part, pixels[shown[is_large]], own[is_large] * camera.zoom, shown[is_large])
             shown, radii = shown[~is_large], radii[~is_large]
         centres = np.ascontiguousarray(pixels[shown])
@@ -360,3 +368,70 @@ def hanging_springs(scene: Scene, particles: Mask) -> Mask:
     """Springs (m,) with an end at one of the particles (n,)."""
     held = particles | particles[scene.first_of_weld] if len(scene.welds) else particles
     return held[scene.particle_a] | held[scene.particle_b]
+
+
+@dataclass(eq=False)
+class _Filled:
+    """A scene as drawing reads a world's state."""
+
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    inverse_mass: Floats
+    radius: Floats
+    particle_active: Mask
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    rest_length: Floats
+    stiffness: Floats
+    spring_active: Mask
+
+
+class FillPreview:
+    """Draws what the parts of a scene will look like."""
+
+    def __init__(self) -> None:
+        self._painter = Painter()
+        self._tiles: tuple[Theme, Tiles] | None = None
+        self._level_slots: tuple[Scene, LevelSlots] | None = None
+
+    def paint(
+        self, layer: pygame.Surface, camera: Camera, scene: Scene, particles: Mask, springs: Mask, scale: float,
+        compiled: bool, alpha: int = FILL_ALPHA,
+    ) -> bool:  # fmt: skip
+        """Draw those particles (n,) and springs (m,) of a scene on a layer; whether that would not take too long."""
+        if not 0 < len(scene.position) + len(scene.particle_a) <= MOST_FILLED:
+            return False
+        if self._level_slots is None or self._level_slots[0] is not scene:
+            self._level_slots = (scene, level_slots_of(scene.level, is_welded=False))
+        if self._tiles is None or self._tiles[0] is not theme_now():
+            self._tiles = theme_now(), Tiles(theme_now())
+        state = _filled_of(scene, particles, springs)
+        upright, still = np.zeros(len(scene.position)), np.zeros(len(scene.particle_a))
+        frame = Frame(state, camera.project(scene.position), upright, still, camera.zoom, scale, *self._tiles)
+        picture = layer.copy()
+        picture.set_clip(layer.get_clip())
+        self._painter.compiled = compiled
+        self._painter.begin(picture)
+        drawables = Drawables(self._level_slots[1], state, particles, springs)
+        drawables.soft.trace(self._painter, frame)
+        drawables.draw(self._painter, frame, False)
+        picture.set_alpha(alpha)
+        layer.blit(picture, (0, 0))
+        return True
+
+
+def _filled_of(scene: Scene, particles: Mask, springs: Mask) -> _Filled:
+    return _Filled(
+        scene.position,
+        np.zeros_like(scene.position),
+        scene.mass,
+        np.where(scene.pinned, 0.0, 1.0),
+        scene.radius,
+        particles,
+        scene.particle_a.astype(np.int32),
+        scene.particle_b.astype(np.int32),
+        scene.rest_length,
+        np.zeros_like(scene.rest_length),
+        springs,
+    )

@@ -1,5 +1,6 @@
-"""Corners of the terrain that is selected: handles to drag them, to put new ones in, and the gesture that does it."""
+"""Corners of what is selected, and ends of bodies, which are dragged and placed."""
 
+import contextlib
 import math
 
 import numpy as np
@@ -10,9 +11,14 @@ from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import MUTED
 from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
 from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.fields import set_field
+from sandbox.editor.edits.placing import unweld, weld
 from sandbox.editor.edits.terrain import corners_of, form_of, insert_corner, move_corner, piece_of
-from sandbox.editor.items import Item
+from sandbox.editor.held_joins import Held
+from sandbox.editor.items import Item, chosen_bodies
 
+# Fields of a body that has ends.
+_FIELDS = ("start", "end")
 # Sizes in layout units: how far off a press still takes a corner; edges shorter than this have no middle to take.
 REACH = 9.0
 SHORTEST = 34.0
@@ -123,6 +129,70 @@ class CornerMoving(Placing):
     def _placed(self, document: Document) -> Document:
         change = insert_corner if self._is_new else move_corner
         return change(document, str(self._item.key), self._number, self._snap.point)
+
+
+class BodyEnds:
+    """Handles of the two ends of a body; None of what has no ends: see `of`."""
+
+    def __init__(self, item: Item, points: dict[str, Point], camera: Camera, scale: float) -> None:
+        self.item, self.points, self._scale = item, points, scale
+        self.places = {name: camera.to_pixels(point) for name, point in points.items()}
+
+    @classmethod
+    def of(cls, document: Document, camera: Camera, scale: float) -> "BodyEnds | None":
+        """Those of the body that alone is selected; None where it has no ends, or its form is kept as a pose."""
+        selection = document.selection
+        only = next(iter(selection)) if len(selection) == 1 else None
+        if only is None or only.kind != "body":
+            return None
+        body = chosen_bodies(document.level, selection)[0]
+        if body.pose is not None or any(name not in body.__dict__ for name in _FIELDS):
+            return None
+        return cls(only, {name: body.__dict__[name] for name in _FIELDS}, camera, scale)
+
+    def at(self, pixel: Point) -> str | None:
+        """The end at a pixel."""
+        near = [name for name, place in self.places.items() if math.dist(place, pixel) <= REACH * self._scale]
+        return min(near, key=lambda name: math.dist(self.places[name], pixel), default=None)
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw both handles."""
+        for place in self.places.values():
+            draw_corner(surface, place, self._scale, CORNER, is_chosen=False)
+
+
+class EndMoving(Placing):
+    """Moves one end of a body to what it snaps to, off what it was joined to, and joins it to the particle there."""
+
+    def __init__(self, screen: Editing, ends: BodyEnds, field: str) -> None:
+        other = ends.points["start" if field == "end" else "end"]
+        super().__init__(screen, ends.item, ends.points[field], other, f"Move the {field}")
+        self._field = field
+
+    @property
+    def measure(self) -> str:
+        """Length and angle of the body, in words."""
+        dx, dy = self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1]
+        return f"{math.hypot(dx, dy):.3g} m, {math.degrees(math.atan2(dy, dx)):.3g}°"
+
+    def _placed(self, document: Document) -> Document:
+        return set_field(document, frozenset({self._item}), self._field, self._snap.point)
+
+    def _changed(self, document: Document) -> Document:
+        own, joined = f"{self._item.key}.{self._field}", document.level.welds
+        with contextlib.suppress(EditError):  # it may be joined to nothing
+            document = unweld(document, own)
+        gone = tuple(pair for pair in joined if pair not in document.level.welds)
+        document = self._placed(document)
+        if self._snap.name is None:
+            if gone:
+                self._screen.say(Held(document, gone).notice)
+            return document
+        try:
+            return weld(document, self._snap.name, own)
+        except EditError as error:
+            self._screen.say(f"Not joined: {error}")
+            return document
 
 
 def _middle(a: Point, b: Point) -> Point:

@@ -9,10 +9,17 @@ import pygame
 from sandbox.app.base.sentences import capitalised, sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Point
-from sandbox.app.edit.canvas.corners import CornerMoving, Corners
-from sandbox.app.edit.canvas.ends import BodyEnds, EndMoving
-from sandbox.app.edit.canvas.gestures import Boxing, Copying, Gesture, Lassoing, Moving, Transforming, pick_mode
-from sandbox.app.edit.canvas.handles import Handles
+from sandbox.app.edit.canvas.corners import BodyEnds, CornerMoving, Corners, EndMoving
+from sandbox.app.edit.canvas.gestures import (
+    Boxing,
+    Copying,
+    Gesture,
+    Handles,
+    Lassoing,
+    Moving,
+    Transforming,
+    pick_mode,
+)
 from sandbox.app.edit.canvas.overlay import draw_outline
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import groups_of, taken_groups, with_groups

@@ -7,8 +7,7 @@ import pygame
 
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.looks import material_colours
-from sandbox.app.edit.side.list_head import HeadButton, ListHead
-from sandbox.app.edit.side.side_page import SidePage
+from sandbox.app.edit.side.side_page import HeadButton, ListHead, SidePage
 from sandbox.app.widgets.form import Form
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document

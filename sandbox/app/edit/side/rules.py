@@ -6,8 +6,7 @@ import pygame
 
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, TEXT, Colour
-from sandbox.app.edit.side.list_head import HeadButton, ListHead
-from sandbox.app.edit.side.side_page import SidePage
+from sandbox.app.edit.side.side_page import HeadButton, ListHead, SidePage
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.form import Form
 from sandbox.app.widgets.rows import Row

@@ -9,14 +9,11 @@ import pygame
 from sandbox.app.contracts.application import Editing
 from sandbox.app.edit.side.catalogue import CataloguePage
 from sandbox.app.edit.side.checks import ChecksPage
-from sandbox.app.edit.side.findings import FindingsPage
-from sandbox.app.edit.side.history import HistoryPage
 from sandbox.app.edit.side.materials import MaterialsPage
-from sandbox.app.edit.side.objects import ObjectsPage
-from sandbox.app.edit.side.properties import PropertiesPage
+from sandbox.app.edit.side.objects import FindingsPage, HistoryPage, ObjectsPage
+from sandbox.app.edit.side.properties import PropertiesPage, SettingsPage
 from sandbox.app.edit.side.range_page import RangePage
 from sandbox.app.edit.side.rules import RulesPage
-from sandbox.app.edit.side.settings import SettingsPage
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.ui import Ui

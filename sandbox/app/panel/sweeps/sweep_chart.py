@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from sandbox.app.panel.sweeps.sweep_measures import SweepMeasure, measure_of, scale_of, shown_values
+from sandbox.app.panel.sweeps.sweep_layer import SweepMeasure, measure_of, scale_of, shown_values
 from sandbox.physics.analysis.stability import CoefficientZones
 from sandbox.physics.arrays import Floats
 from sandbox.session.sweep.grid import CD, CS, Rows, SweepGrid
