@@ -2,6 +2,7 @@
 
 import pytest
 
+from sandbox.app.panel.softness_reading import MEASURING
 from sandbox.editor.items import Item
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.reading.parse import parse_level
@@ -150,3 +151,25 @@ def test_the_menus_follow_bodies_that_join_a_run_and_are_taken_back(jelly):
     assert (panel.firmness.menu.words, panel.menu.words) == (bodies, materials)
     assert panel.firmness.menu.chosen == bodies[0] and panel.menu.chosen == materials[0]
     assert texts(jelly) == AS_MADE
+
+
+def test_the_editor_says_of_a_flat_box_the_word_and_the_sag_that_play_shows(edit, open_app):
+    flat = {"shape": {"box": [2.5, 0.5]}, "position": [0, 0.5], "spacing": 0.25}
+    level = parse_level(firm_level({"sag": 0.1}, floor=True, **flat), "flat")
+    driver = edit(level)
+    driver.editor.select(frozenset([Item("body", "body")]))
+    shown = "firmness.measured"
+    for _ in range(3_000):
+        driver.pass_unseen()
+        found = driver.editor.side.page.form.properties
+        if shown in found and found[shown].value != MEASURING:
+            break
+    assert found["firmness"].value == "soft" and found["firmness.sag"].value == 10.0
+    played = open_app(level)
+    played.measure()
+    rows = played.panel.firmness
+    assert found[shown].value == f"{rows.words.chosen}, {rows.sag.text} %"
+    assert float(rows.sag.text) < 1.0
+    driver.editor.select(frozenset())
+    driver.frames(2)
+    assert shown not in driver.editor.side.page.form.properties
