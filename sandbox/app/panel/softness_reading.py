@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.base.sag_map import Pairs, word_pairs
-from sandbox.app.base.sag_sentences import subject_words
+from sandbox.app.base.sag_map import Pairs, subject_words, word_pairs
 from sandbox.app.panel.readings import motion_words, per_cent, sag_words
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.field import DASH, MIXED

@@ -16,11 +16,10 @@ from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor,
 from sandbox.app.edit.canvas.pointer import SelectTool
 from sandbox.app.edit.canvas.trails import draw_attempts, draw_trails
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.actuators import SceneActuators, scene_actuators
 from sandbox.editor.items import PARTS, Item, Selection, keys
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.rule_text import acted_on, named_things, named_zones
-from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.scene import Scene, SceneActuators, make_scene, scene_actuators
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.rules.rule import RuleDef
 

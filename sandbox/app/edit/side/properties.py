@@ -14,7 +14,7 @@ from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
-from sandbox.editor.edits.retime import set_rate_in_pace
+from sandbox.editor.edits.materials import set_rate_in_pace
 from sandbox.editor.panel.field_info import FieldInfo
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pygame
 
-from sandbox.app.base.coefficient_scale import CoefficientScale
+from sandbox.app.base.sag_map import CoefficientScale
 from sandbox.app.draw.colours import DECADE, FIELD, MUTED, TEXT, Colour, mixed
 from sandbox.app.widgets.widget import WindowLayout
 from sandbox.physics.analysis.stability import CoefficientZones
