@@ -1,4 +1,4 @@
-"""The energy budget of bodies, what their earlier losses still allow them (passivity), and the relaxation of targets.
+"""The energy budget of bodies, what their earlier losses still allow them (passivity), and target relaxation.
 
 A step whose energy stays within what a body or an island had plus its budget is taken. Where an island gains by a hair,
 its target is relaxed, and it is solved again: what the step gains is taken off the motion of the island, v* of all that
