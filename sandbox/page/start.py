@@ -33,7 +33,7 @@ from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB
 from sandbox.physics.joints.joint_set import DrivenWheels
 from sandbox.physics.keeping.arguments import FARTHEST
-from sandbox.physics.kits import joining, kit, removing
+from sandbox.physics.kits import joining, kit_kernels, removing
 from sandbox.physics.marks import ALL_GROUPS, GRAB_COUNT, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.pipeline.block_owner import block_of
@@ -244,13 +244,14 @@ def array_path(column: Column) -> str:
 def kit_table(world: LevelWorld) -> dict[str, Any]:
     """The tables of a kit's columns, limits, answers of kernels and words; 64-bit numbers as text."""
     return {
-        "parts": kit.PART_NAMES,
+        "parts": kit_kernels.PART_NAMES,
         "families": _KIT_FAMILIES,
-        "slots": [[c.part, c.name, c.usual, _range(c)] for c in kit.SLOT_TABLE],
-        "numbers": [[c.part, c.name, _number(c.usual), _range(c)] for c in kit.NUMBER_TABLE],
-        "table": [str(value) for value in kit.TABLE.tolist()],
-        "ranges": [_number(value) for value in kit.RANGES.tolist()],
-        "codes": {name: getattr(kit, name) for name in _CODES} | {"NO_ARENA": NO_ARENA, "BAD_SLOT": removing.BAD_SLOT},
+        "slots": [[c.part, c.name, c.usual, _range(c)] for c in joining.SLOT_TABLE],
+        "numbers": [[c.part, c.name, _number(c.usual), _range(c)] for c in joining.NUMBER_TABLE],
+        "table": [str(value) for value in joining.TABLE.tolist()],
+        "ranges": [_number(value) for value in joining.RANGES.tolist()],
+        "codes": {name: getattr(kit_kernels, name) for name in _CODES}
+        | {"NO_ARENA": NO_ARENA, "BAD_SLOT": removing.BAD_SLOT},
         "ways": {name: getattr(removing, name) for name in ("BODY", "HANGING")},
         "most": {
             "particles": PARTICLE_LIMIT, "springs": SPRING_LIMIT, "motors": MOTOR_LIMIT,
@@ -264,9 +265,9 @@ def kit_table(world: LevelWorld) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _range(column: kit.SlotColumn | kit.NumberColumn) -> list[Any] | None:
+def _range(column: joining.SlotColumn | joining.NumberColumn) -> list[Any] | None:
     """Least, most and words of a range; None: of what counts rows."""
-    if isinstance(column, kit.SlotColumn):
+    if isinstance(column, joining.SlotColumn):
         within = Range(column.low, column.high)
         return None if column.of else [str(column.low), str(column.high), str(within)]
     return [_number(column.within.lowest), _number(column.within.high), str(column.within)]

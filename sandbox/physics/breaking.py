@@ -76,10 +76,8 @@ def yield_and_break(state: State, good: GoodValues, limits: MaterialLimits) -> i
         rest = state.rest_length[s]
         if not state.spring_active[s] or m < 0 or not rest > 0.0:
             continue
-        a = state.particle_a[s]
-        b = state.particle_b[s]
-        dx = state.position[b, 0] - state.position[a, 0]
-        dy = state.position[b, 1] - state.position[a, 1]
+        a, b = state.particle_a[s], state.particle_b[s]
+        dx, dy = state.position[b, 0] - state.position[a, 0], state.position[b, 1] - state.position[a, 1]
         length = math.sqrt(dx * dx + dy * dy)
         if not limits.driven[s]:
             yielding = limits.yielding[m]

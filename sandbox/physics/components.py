@@ -33,8 +33,7 @@ def find_joined(state: State, springs: Flags, particles: Flags, label: Slots) ->
     for p in range(label.shape[0]):
         label[p] = p
     for s in range(springs.shape[0]):
-        a = state.particle_a[s]
-        b = state.particle_b[s]
+        a, b = state.particle_a[s], state.particle_b[s]
         if springs[s] and particles[a] and particles[b]:
             join(label, a, b)
     corner = 0

@@ -68,30 +68,16 @@ def constraints_of(state: State | StateArrays) -> ConstraintArrays:
 
 
 @inner_kernel
-def _area_slope(place: FloatRows, first: int, last: int, slope: FloatRows) -> None:
-    # dA / dx_i = the vector between its two neighbours, turned, over 2
-    for c in range(first, last):
-        previous = c - 1 if c > first else last - 1
-        following = c + 1 if c + 1 < last else first
-        slope[c, 0] = 0.5 * (place[following, 1] - place[previous, 1])
-        slope[c, 1] = 0.5 * (place[previous, 0] - place[following, 0])
-
-
-@inner_kernel
 def _bend(place: FloatRows, first: int, cosine: float, sine: float, weight: Floats, slope: FloatRows) -> float:
     # e = the first link, turned by the rest angle; phi from e to the second link: cos(phi / 2) = |e + n| / 2,
     # sin(phi / 2) = |n - e| / 2, and the halves of those; no trigonometry.
-    ax = place[first + 1, 0] - place[first, 0]
-    ay = place[first + 1, 1] - place[first, 1]
-    bx = place[first + 2, 0] - place[first + 1, 0]
-    by = place[first + 2, 1] - place[first + 1, 1]
-    a = math.sqrt(ax * ax + ay * ay)
-    b = math.sqrt(bx * bx + by * by)
+    ax, ay = place[first + 1, 0] - place[first, 0], place[first + 1, 1] - place[first, 1]
+    bx, by = place[first + 2, 0] - place[first + 1, 0], place[first + 2, 1] - place[first + 1, 1]
+    a, b = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
     if not (a > SHORTEST and b > SHORTEST):
         # A link of no length has no angle.
         for c in range(first, first + 3):
-            slope[c, 0] = 0.0
-            slope[c, 1] = 0.0
+            slope[c, 0] = slope[c, 1] = 0.0
         return 0.0
     ax /= a
     ay /= a
@@ -120,10 +106,15 @@ def evaluate(
     kind: int, place: FloatRows, first: int, last: int, rest: FloatRows, at: int, weight: Floats, slope: FloatRows
 ) -> float:
     """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
-    if kind == AREA:
-        _area_slope(place, first, last, slope)
-        return polygon_area(place, first, last) - rest[at, 0]
-    return _bend(place, first, rest[at, 0], rest[at, 1], weight, slope)
+    if kind != AREA:
+        return _bend(place, first, rest[at, 0], rest[at, 1], weight, slope)
+    # dA / dx_i = the vector between its two neighbours, turned, over 2
+    for c in range(first, last):
+        previous = c - 1 if c > first else last - 1
+        following = c + 1 if c + 1 < last else first
+        slope[c, 0] = 0.5 * (place[following, 1] - place[previous, 1])
+        slope[c, 1] = 0.5 * (place[previous, 0] - place[following, 0])
+    return polygon_area(place, first, last) - rest[at, 0]
 
 
 @inner_kernel
@@ -162,8 +153,7 @@ def constraint_values(
     for k in range(constraints.kind.shape[0]):
         first = constraints.first[k]
         last = first + constraints.corners[k]
-        value[k] = 0.0
-        mass[k] = 0.0
+        value[k] = mass[k] = 0.0
         if constraints.active[k]:
             look(first, last, position, constraints.particle, place)
             value[k] = evaluate(constraints.kind[k], place, first, last, constraints.rest, k, constraints.weight, slope)

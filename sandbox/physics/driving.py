@@ -8,7 +8,7 @@ asks for, so that it does not leap when it is let go.
 import math
 from dataclasses import dataclass, field
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,9 @@ from sandbox.physics.state import GoodValues, State
 # How far a wave goes in a part of its period, at its steepest: the slope of its parabolas where they meet.
 STEEPEST = 8.0
 
-_slots, _flags, _floats = (partial(np.zeros, 0, dtype) for dtype in (np.int64, np.bool_, np.float64))
+_slots: Any = partial(np.zeros, 0, np.int64)
+_flags: Any = partial(np.zeros, 0, np.bool_)
+_floats: Any = partial(np.zeros, 0, np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,8 +88,7 @@ class Actuators:
     def springs(self, count: int) -> NDArray[np.bool_]:
         """Which of the first `count` springs have a rest length that is driven."""
         driven = np.zeros(count, dtype=np.bool_)
-        driven[self.muscles.spring] = True
-        driven[self.hydraulics.spring] = True
+        driven[self.muscles.spring] = driven[self.hydraulics.spring] = True
         return driven
 
 
@@ -158,8 +159,7 @@ def _held_back(state: State, s: int, wanted: float, force: float, stride: float,
         asked = 0.0
     if stride > 0.0:
         asked += stride * max(1.0, resists / restores if restores > 0.0 else math.inf)
-    dx = state.position[b, 0] - state.position[a, 0]
-    dy = state.position[b, 1] - state.position[a, 1]
+    dx, dy = state.position[b, 0] - state.position[a, 0], state.position[b, 1] - state.position[a, 1]
     present = math.sqrt(dx * dx + dy * dy)
     # Never below 0, which no rest length is.
     return min(max(wanted, max(0.0, present - asked)), present + asked)
@@ -181,7 +181,9 @@ def contract(
 
 
 @inner_kernel
-def _extend(state: State, good: GoodValues, drives: Drives, solver: int, tick_rate: int) -> None:
+def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, solver: int, tick_rate: int) -> None:
+    """Give driven springs the rest lengths that they have at a tick; solver: see settings.py."""
+    contract(state, good, drives, 0, tick, solver, tick_rate)
     # L += value rate h, within shortest..longest;  where it returns and the value is 0, towards L0 by rate h at most
     h = 1.0 / tick_rate
     for k in range(drives.hydraulic.shape[0]):
@@ -196,13 +198,6 @@ def _extend(state: State, good: GoodValues, drives: Drives, solver: int, tick_ra
         wanted = _held_back(state, s, wanted, drives.hydraulic_force[k], rate / tick_rate, solver, h)
         state.rest_length[s] = min(max(wanted, drives.shortest[k]), drives.longest[k])
         good.rest_length[s] = state.rest_length[s]
-
-
-@inner_kernel
-def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, solver: int, tick_rate: int) -> None:
-    """Give driven springs the rest lengths that they have at a tick; solver: see settings.py."""
-    contract(state, good, drives, 0, tick, solver, tick_rate)
-    _extend(state, good, drives, solver, tick_rate)
 
 
 @kernel

@@ -104,8 +104,7 @@ def label_all_joined(state: State, flight: Flight) -> None:
     for p in range(flight.stays.shape[0]):
         flight.stays[p] = False
         flight.members[p] = 0
-        flight.mass[p] = 0.0
-        flight.pulled[p] = 0.0
+        flight.mass[p] = flight.pulled[p] = 0.0
 
 
 @inner_kernel

@@ -122,7 +122,7 @@ def depth_inside(zones: Zones, z: int, x: float, y: float) -> float:
 
 
 @inner_kernel
-def may_be_inside(zones: Zones, z: int, x: float, y: float) -> bool:
+def _may_be_inside(zones: Zones, z: int, x: float, y: float) -> bool:
     """Whether a place lies in the box around a zone that is no circle."""
     shape = zones.shape
     return zones.kind[z] == CIRCLE or (shape[z, 0] <= x <= shape[z, 2] and shape[z, 1] <= y <= shape[z, 3])
@@ -181,7 +181,7 @@ def _depth(rules: Rules, t: int, state: State) -> float:
             continue
         x, y = state.position[p, 0], state.position[p, 1]
         # One that lies too far out settles it; the value is no more than a bound then.
-        if low >= 0.0 and not may_be_inside(zones, z, x, y):
+        if low >= 0.0 and not _may_be_inside(zones, z, x, y):
             return -math.inf
         least = min(least, depth_inside(zones, z, x, y))
         if least < low:

@@ -42,8 +42,26 @@ def contain(state: State, good: GoodValues, ranges: Ranges, impulse: FloatRows, 
     for k in range(min(count, found.shape[0] // 2)):
         contact = found[2 * k + 1]
         impulse[contact, 0] = impulse[contact, 1] = impact[contact] = 0.0
-    count = _contain_particles(state, good, ranges, found, count)
-    return _contain_constants(state, good, ranges, found, count)
+    n = _freeze(state, good, found, count, _find(state.mass, ranges.mass, found, count))
+    n = contain_motion(state, good, ranges, found, n)
+    n = _freeze(state, good, found, n, _find(state.inverse_mass, ranges.inverse_mass, found, n))
+    n = _freeze(state, good, found, n, _find(state.radius, ranges.radius, found, n))
+    n = _freeze(state, good, found, n, _find(state.gravity_scale, ranges.gravity_scale, found, n))
+    n = _freeze(state, good, found, n, _find(state.friction, ranges.friction, found, n))
+    n = _freeze(state, good, found, n, _find(state.restitution, ranges.restitution, found, n))
+    n = _freeze(state, good, found, n, _find(state.rolling, ranges.rolling, found, n))
+    n = _take_back(state.rest_length, good.rest_length, ranges.rest_length, found, n)
+    n = _take_back(state.stiffness, good.stiffness, ranges.stiffness, found, n)
+    n = _take_back(state.damping, good.damping, ranges.damping, found, n)
+    n = _take_back(state.hooke_stiffness, good.hooke_stiffness, ranges.hooke_stiffness, found, n)
+    n = _take_back(state.hooke_damping, good.hooke_damping, ranges.hooke_damping, found, n)
+    n = _take_back(state.lowest_mode, good.lowest_mode, ranges.lowest_mode, found, n)
+    n = _take_back_rows(state.constraint_rest, good.constraint_rest, ranges.constraint_rest, found, n)
+    n = _take_back(state.constraint_stiffness, good.constraint_stiffness, ranges.constraint_stiffness, found, n)
+    n = _take_back(state.constraint_damping, good.constraint_damping, ranges.constraint_damping, found, n)
+    n = _take_back(state.constraint_lowest_mode, good.constraint_lowest_mode, ranges.constraint_lowest_mode, found, n)
+    n = _take_back(state.corner_weight, good.corner_weight, ranges.corner_weight, found, n)
+    return _take_back_rows(state.corner_form, good.corner_form, ranges.corner_form, found, n)
 
 
 @inner_kernel
@@ -131,32 +149,3 @@ def _take_back_rows(values: FloatRows, good: FloatRows, within: Floats, found: S
         for axis in range(2):
             values[found[2 * k + 1], axis] = good[found[2 * k + 1], axis]
     return last
-
-
-@inner_kernel
-def _contain_particles(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
-    n = _freeze(state, good, found, count, _find(state.mass, ranges.mass, found, count))
-    n = contain_motion(state, good, ranges, found, n)
-    n = _freeze(state, good, found, n, _find(state.inverse_mass, ranges.inverse_mass, found, n))
-    n = _freeze(state, good, found, n, _find(state.radius, ranges.radius, found, n))
-    n = _freeze(state, good, found, n, _find(state.gravity_scale, ranges.gravity_scale, found, n))
-    n = _freeze(state, good, found, n, _find(state.friction, ranges.friction, found, n))
-    n = _freeze(state, good, found, n, _find(state.restitution, ranges.restitution, found, n))
-    return _freeze(state, good, found, n, _find(state.rolling, ranges.rolling, found, n))
-
-
-@inner_kernel
-def _contain_constants(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
-    # Those of springs, constraints and corners.
-    n = _take_back(state.rest_length, good.rest_length, ranges.rest_length, found, count)
-    n = _take_back(state.stiffness, good.stiffness, ranges.stiffness, found, n)
-    n = _take_back(state.damping, good.damping, ranges.damping, found, n)
-    n = _take_back(state.hooke_stiffness, good.hooke_stiffness, ranges.hooke_stiffness, found, n)
-    n = _take_back(state.hooke_damping, good.hooke_damping, ranges.hooke_damping, found, n)
-    n = _take_back(state.lowest_mode, good.lowest_mode, ranges.lowest_mode, found, n)
-    n = _take_back_rows(state.constraint_rest, good.constraint_rest, ranges.constraint_rest, found, n)
-    n = _take_back(state.constraint_stiffness, good.constraint_stiffness, ranges.constraint_stiffness, found, n)
-    n = _take_back(state.constraint_damping, good.constraint_damping, ranges.constraint_damping, found, n)
-    n = _take_back(state.constraint_lowest_mode, good.constraint_lowest_mode, ranges.constraint_lowest_mode, found, n)
-    n = _take_back(state.corner_weight, good.corner_weight, ranges.corner_weight, found, n)
-    return _take_back_rows(state.corner_form, good.corner_form, ranges.corner_form, found, n)

@@ -60,7 +60,14 @@ def take(world: World) -> Snapshot:
 
 def restore(world: World, snapshot: Snapshot) -> None:
     """Bring a world back to a snapshot of itself, slots added since then included."""
-    _forget_names(world, snapshot)
+    # Names of slots that the snapshot does not have, or has for something else that joined, go.
+    particles, springs = len(snapshot.mass), len(snapshot.rest_length)
+    for present, kept in itertools.zip_longest(world.joined, snapshot.equipment.joined):
+        if present is not kept:
+            for joined in filter(None, (present, kept)):
+                particles, springs = min(particles, joined.first_particle), min(springs, joined.first_spring)
+            break
+    world.forget_names_beyond(particles, springs)
     world.equipment = snapshot.equipment
     # Before the arrays: another solver begins some of them anew.
     world.settings = snapshot.settings
@@ -80,17 +87,6 @@ def restore(world: World, snapshot: Snapshot) -> None:
     world.grab_spring = snapshot.grab_spring
     world.may_fly = True
     world.trust()
-
-
-def _forget_names(world: World, snapshot: Snapshot) -> None:
-    """Drop the names of slots that the snapshot does not have, or has for something else that joined."""
-    particles, springs = len(snapshot.mass), len(snapshot.rest_length)
-    for present, kept in itertools.zip_longest(world.joined, snapshot.equipment.joined):
-        if present is not kept:
-            for joined in filter(None, (present, kept)):
-                particles, springs = min(particles, joined.first_particle), min(springs, joined.first_spring)
-            break
-    world.forget_names_beyond(particles, springs)
 
 
 def canonical_bytes(array: NDArray[Any]) -> bytes:

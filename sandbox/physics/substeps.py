@@ -108,12 +108,24 @@ def turn_into_substep(
         for s in range(stiffness.shape[0]):
             stiffness[s] = min(stiffness[s], highest)
             damping[s] = min(damping[s], highest)
-    if keeps == MOTION:
-        _keep_motion(stiffness, damping, lowest_mode, count)
-    else:
-        _keep_stiffness(stiffness, damping, lowest_mode, count, keeps == ALL_BUT_FIRM)
+    for s in range(stiffness.shape[0] if count > 1 else 0):
+        # What is rigid, k at its cap, stays as rigid as a step lets it be.
+        is_firm = keeps == ALL_BUT_FIRM and (lowest_mode[s] > 0.0 or damping[s] > HIGHEST_COEFFICIENT)
+        if keeps == MOTION or is_firm:
+            # One exact halving of h at a time.
+            parts = 1
+            while parts < count:
+                stiffness[s], damping[s] = half_step_of_network(stiffness[s], damping[s], lowest_mode[s])
+                parts *= 2
+        else:
+            stiffness[s], damping[s] = part_of_network(stiffness[s], damping[s], lowest_mode[s], count)
     if drag_factor != 1.0:
-        _weigh_down(stiffness, damping, drag_factor)
+        # Those of springs of the same k and c whose ends are heavier by a factor. The air takes part in every step:
+        # (1 + drag h) m (v' - v*) = J.
+        for s in range(stiffness.shape[0]):
+            whole = damping[s] + (1.0 - damping[s]) * drag_factor
+            stiffness[s] /= whole
+            damping[s] /= whole
 
 
 @kernel
@@ -134,40 +146,6 @@ def limit_rings(state: State, stiffness: Floats, damping: Floats) -> None:
 
 
 @inner_kernel
-def _weigh_down(stiffness: Floats, damping: Floats, drag_factor: float) -> None:
-    # Those of springs of the same k and c whose ends are heavier by a factor. The air takes part in every step:
-    # (1 + drag h) m (v' - v*) = J.
-    for s in range(stiffness.shape[0]):
-        whole = damping[s] + (1.0 - damping[s]) * drag_factor
-        stiffness[s] /= whole
-        damping[s] /= whole
-
-
-@inner_kernel
-def _keep_motion(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int) -> None:
-    # One exact halving of h at a time.
-    for s in range(stiffness.shape[0]):
-        count = 1
-        while count < substeps:
-            stiffness[s], damping[s] = half_step_of_network(stiffness[s], damping[s], lowest_mode[s])
-            count *= 2
-
-
-@inner_kernel
-def _keep_stiffness(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int, firm: bool) -> None:
-    if parts > 1:
-        for s in range(stiffness.shape[0]):
-            # What is rigid, k at its cap, stays as rigid as a step lets it be.
-            if firm and (lowest_mode[s] > 0.0 or damping[s] > HIGHEST_COEFFICIENT):
-                count = 1
-                while count < parts:
-                    stiffness[s], damping[s] = half_step_of_network(stiffness[s], damping[s], lowest_mode[s])
-                    count *= 2
-            else:
-                stiffness[s], damping[s] = part_of_network(stiffness[s], damping[s], lowest_mode[s], parts)
-
-
-@inner_kernel
 def _fastest_turn(state: State, grab_spring: int, grabs: int, h: float, shortest: Floats) -> float:
     # Largest ((|v_b - v_a| h) / L)^2; a grab's spring, which has no length, counts by the shortest spring at its end.
     velocity, inverse_mass = state.velocity, state.inverse_mass
@@ -179,12 +157,10 @@ def _fastest_turn(state: State, grab_spring: int, grabs: int, h: float, shortest
         if not state.spring_active[s] or of_hand:
             continue
         length = state.rest_length[s]
-        a = state.particle_a[s]
-        b = state.particle_b[s]
+        a, b = state.particle_a[s], state.particle_b[s]
         if not length > 0.0 or (inverse_mass[a] == 0.0 and inverse_mass[b] == 0.0):
             continue
-        u = (velocity[b, 0] - velocity[a, 0]) * h / length
-        v = (velocity[b, 1] - velocity[a, 1]) * h / length
+        u, v = (velocity[b, 0] - velocity[a, 0]) * h / length, (velocity[b, 1] - velocity[a, 1]) * h / length
         turn = u * u + v * v
         if not turn <= largest:
             largest = turn
@@ -196,8 +172,7 @@ def _fastest_turn(state: State, grab_spring: int, grabs: int, h: float, shortest
     for grab in range(grabs):
         s = grab_spring + grab
         if state.spring_active[s] and shortest[grab] > 0.0:
-            a = state.particle_a[s]
-            b = state.particle_b[s]
+            a, b = state.particle_a[s], state.particle_b[s]
             u = (velocity[b, 0] - velocity[a, 0]) * h / shortest[grab]
             v = (velocity[b, 1] - velocity[a, 1]) * h / shortest[grab]
             turn = u * u + v * v

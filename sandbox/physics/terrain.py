@@ -179,10 +179,8 @@ def _size_grid(edges: Terrain, work: GridScratch) -> None:
 def _enter(k: int, edges: Terrain, fills: bool) -> None:
     # Count edge k in every cell that it crosses or comes close to, or enter it there, from the ends of their lists.
     corner, cell, start, a, b = edges.corner, edges.cell[0], edges.cell_start, edges.edge_a[k], edges.edge_b[k]
-    ax = (edges.vertex[a, 0] - corner[0]) / cell
-    ay = (edges.vertex[a, 1] - corner[1]) / cell
-    bx = (edges.vertex[b, 0] - corner[0]) / cell
-    by = (edges.vertex[b, 1] - corner[1]) / cell
+    ax, ay = (edges.vertex[a, 0] - corner[0]) / cell, (edges.vertex[a, 1] - corner[1]) / cell
+    bx, by = (edges.vertex[b, 0] - corner[0]) / cell, (edges.vertex[b, 1] - corner[1]) / cell
     if by < ay:
         ax, ay, bx, by = bx, by, ax, ay
     for row in range(math.floor(ay - CELL_SLACK), math.floor(by + CELL_SLACK) + 1):
@@ -252,7 +250,10 @@ def _tips(looked_at: Floats, pairs: Slots, edges: Terrain) -> tuple[Slots, Slots
         ])  # fmt: skip
         if not len(found) or (found @ found.T < FLAT - 1.0).any() or _is_hollow(v, pairs[close], solid[close], along):
             continue
-        if not (_polar(found) @ found.T <= 1e-9).all(axis=1).any() or _is_buried(place, rim_a, rim_b):
+        # Directions that may lie across all ways: those away from each, and the two across each.
+        across = np.stack([-found[:, 1], found[:, 0]], axis=1)
+        polar = np.concatenate([-found, across, -across])
+        if not (polar @ found.T <= 1e-9).all(axis=1).any() or _is_buried(place, rim_a, rim_b):
             continue
         tips.append(v)
         starts.append(starts[-1] + len(found))
@@ -266,12 +267,6 @@ def _tips(looked_at: Floats, pairs: Slots, edges: Terrain) -> tuple[Slots, Slots
         np.array(tips, dtype=np.int64), np.array(starts, dtype=np.int64), np.ascontiguousarray(np.concatenate(ways)),
         tip_start.astype(np.int64), order.astype(np.int64),
     )  # fmt: skip
-
-
-def _polar(ways: Floats) -> Floats:
-    """Directions that may lie across all ways: those away from each, and the two across each."""
-    across = np.stack([-ways[:, 1], ways[:, 0]], axis=1)
-    return np.concatenate([-ways, across, -across])
 
 
 def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats) -> bool:

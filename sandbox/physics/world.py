@@ -78,7 +78,7 @@ class World(StateArrays):
         self.row_names: dict[Family, tuple[str, ...]] = dict.fromkeys(OF_RULES, ())
         self.joined: tuple[Joined, ...] = ()
         self.grab_particle = self.grab_spring = -1
-        self.terrain, self.water, self.hulls = NO_TERRAIN, NO_POOLS, NO_HULLS  # see terrain.py and water/pools.py
+        self.terrain, self.water, self.hulls = NO_TERRAIN, NO_POOLS, NO_HULLS  # see terrain.py and water/displacers.py
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
         self.broken: Slots = np.zeros(0, dtype=np.int64)

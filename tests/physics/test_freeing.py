@@ -9,6 +9,7 @@ import pytest
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.arena import NO_ARENA
+from sandbox.physics.commands.changes import CLEAR, FREED, free_body
 from sandbox.physics.commands.command import (
     BODY_PINNED,
     FREE,
@@ -18,7 +19,6 @@ from sandbox.physics.commands.command import (
     REASONS,
     command,
 )
-from sandbox.physics.commands.freeing import CLEAR, FREED, free_body
 from sandbox.physics.components import body_of, list_body
 from sandbox.physics.geometry.segment import distances_from_segments, winding_number
 from sandbox.physics.state import good_of, state_of

@@ -18,8 +18,18 @@ from sandbox.level.format.limits import BODY_RADIUS, FORMAT, VERSION
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.keeping.equipment import FirmBody, StiffForm
-from sandbox.physics.kits.joining import DOES_NOT_FIT, NOT_A_TABLE, UNKNOWN, KitError, rows_of
-from sandbox.physics.kits.kit import NUMBER_TABLE, PART_NAMES, SLOT_TABLE, NumberColumn, SlotColumn
+from sandbox.physics.kits.joining import (
+    DOES_NOT_FIT,
+    NOT_A_TABLE,
+    NUMBER_TABLE,
+    SLOT_TABLE,
+    UNKNOWN,
+    KitError,
+    NumberColumn,
+    SlotColumn,
+    rows_of,
+)
+from sandbox.physics.kits.kit_kernels import PART_NAMES
 
 # Of a kit beside the columns of its parts.
 FIELDS = ("bodies", "names", "areas", "forms", "keys", "look")

@@ -21,7 +21,7 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drives_of
 from sandbox.physics.keeping.equipment import FirmBody
 from sandbox.physics.kits.joining import Packed, join_kit, pack, rows_of
-from sandbox.physics.kits.kit import COUNTED
+from sandbox.physics.kits.kit_kernels import COUNTED
 from sandbox.physics.world import World
 
 

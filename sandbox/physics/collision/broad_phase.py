@@ -148,22 +148,6 @@ def _count(boxes: Boxes, grid: Grid) -> int:
 
 
 @inner_kernel
-def _fill(boxes: Boxes, grid: Grid) -> None:
-    cells = grid.cells
-    buckets = grid.start.shape[0] - 1
-    for k in range(boxes.is_target.shape[0]):
-        if boxes.is_target[k]:
-            for column in range(cells[k, 0], cells[k, 2] + 1):
-                for row in range(cells[k, 1], cells[k, 3] + 1):
-                    bucket = bucket_of(column, row, buckets)
-                    entry = grid.at[bucket]
-                    grid.at[bucket] = entry + 1
-                    first = (1 if column == cells[k, 0] else 0) + (2 if row == cells[k, 1] else 0)
-                    grid.object[entry] = 4 * k + first
-                    grid.cell[entry] = cell_number(column, row)
-
-
-@inner_kernel
 def fill_grid(boxes: Boxes, cell: float, grid: Grid) -> tuple[int, int]:
     """Sort the boxes of targets into the grid; how many are large, and how many entries they need in all.
 
@@ -171,8 +155,19 @@ def fill_grid(boxes: Boxes, cell: float, grid: Grid) -> tuple[int, int]:
     """
     larges = _find_cells(boxes, cell, grid)
     entries = _count(boxes, grid)
-    if entries <= grid.object.shape[0]:
-        _fill(boxes, grid)
+    if entries > grid.object.shape[0]:
+        return larges, entries
+    cells = grid.cells
+    for k in range(boxes.is_target.shape[0]):
+        if boxes.is_target[k]:
+            for column in range(cells[k, 0], cells[k, 2] + 1):
+                for row in range(cells[k, 1], cells[k, 3] + 1):
+                    bucket = bucket_of(column, row, grid.start.shape[0] - 1)
+                    entry = grid.at[bucket]
+                    grid.at[bucket] = entry + 1
+                    first = (1 if column == cells[k, 0] else 0) + (2 if row == cells[k, 1] else 0)
+                    grid.object[entry] = 4 * k + first
+                    grid.cell[entry] = cell_number(column, row)
     return larges, entries
 
 

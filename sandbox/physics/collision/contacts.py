@@ -78,8 +78,7 @@ def fill_boxes(colliders: Colliders, dynamic: int, h: float, boxes: Boxes) -> No
         boxes.is_target[p] = is_loose
         boxes.filter[p] = WITH_ALL if is_loose else WITH_EDGES
     for e in range(dynamic):
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
+        a, b = colliders.edge_a[e], colliders.edge_b[e]
         k = particles + e
         boxes.is_target[k] = False
         if colliders.collides[a] == 0 or colliders.collides[b] == 0:
@@ -114,8 +113,7 @@ def find_terrain(boxes: Boxes, terrain: Terrain, pairs: Pairs) -> int:
                 at = row * terrain.size[0] + column
                 for entry in range(terrain.cell_start[at], terrain.cell_start[at + 1]):
                     e = terrain.cell_edge[entry]
-                    a = terrain.edge_a[e]
-                    b = terrain.edge_b[e]
+                    a, b = terrain.edge_a[e], terrain.edge_b[e]
                     if not _passes(
                         box, p, terrain.vertex[a, 0], terrain.vertex[a, 1], terrain.vertex[b, 0], terrain.vertex[b, 1]
                     ):
@@ -160,8 +158,7 @@ def update_aabbs(colliders: Colliders, outline: Outline, begin: int, end: int, b
             low = colliders.position[first, axis]
             high = low
             for e in range(solid[k, 0], solid[k, 1]):
-                a = colliders.position[colliders.edge_a[e], axis]
-                b = colliders.position[colliders.edge_b[e], axis]
+                a, b = colliders.position[colliders.edge_a[e], axis], colliders.position[colliders.edge_b[e], axis]
                 low = min(low, min(a, b))
                 high = max(high, max(a, b))
             bounds[k, axis] = -math.inf if hollow else low
@@ -211,39 +208,38 @@ def find_contacts(
                 edges = find_near(p, k - particles, colliders, near, edges)
         for at in range(terrain_pairs.start[p], terrain_pairs.start[p + 1]):
             edges = find_near(p, dynamic + terrain_pairs.other[at], colliders, near, edges)
-        entered = -1
+        deep = -1
         if last > first and colliders.shape[p] < 0 and outline.dynamic[1] > 0:
-            count, entered = find_entered(
+            count, deep = _find_deep_contact(
                 p, colliders, outline, bounds, kept, first, last, contacts, count
             )  # fmt: skip
-            if entered >= 0:
-                edges = leave_out(colliders.owner[entered], colliders, near, edges)
+            if deep >= 0:
+                edges = leave_out(colliders.owner[deep], colliders, near, edges)
         if edges > 0:
             count = collide_edges(p, h, colliders, near, edges, outline.solid, bounds, dynamic, contacts, count)
         if outline.solid.shape[0] > 0 and (
             (tick + p) % PENETRATION_TICKS == 0 or _was_penetrating(colliders, near, edges, dynamic, kept, first, last)
         ):
-            count = _find_penetration(p, colliders, outline, bounds, near, edges, entered, contacts, count)
+            count = _find_penetration(p, colliders, outline, bounds, near, edges, deep, contacts, count)
         if terrain.tip.shape[0] > 0:
-            count = find_tips(p, h, box, terrain, colliders, contacts, dynamic, particles, count)
+            count = _find_tips(p, h, box, terrain, colliders, contacts, dynamic, particles, count)
     return count
 
 
 @inner_kernel
 def _find_penetration(
-    p: int, colliders: Colliders, outline: Outline, bounds: FloatRows, near: Near, edges: int, entered: int,
+    p: int, colliders: Colliders, outline: Outline, bounds: FloatRows, near: Near, edges: int, deep: int,
     contacts: Contacts, count: int,
 ) -> int:  # fmt: skip
     # A particle that is near no edge of a solid body, yet inside it, is pushed out at the nearest edge.
     solid = outline.solid
-    x = colliders.position[p, 0]
-    y = colliders.position[p, 1]
+    x, y = colliders.position[p, 0], colliders.position[p, 1]
     for k in range(solid.shape[0]):
         if not (bounds[k, 0] <= x <= bounds[k, 2] and bounds[k, 1] <= y <= bounds[k, 3]):
             continue
         body = colliders.edge_a[solid[k, 0]]
         skipped = colliders.owner[body] == colliders.owner[p] or not may_collide(p, body, colliders)
-        if entered >= 0 and colliders.owner[entered] == colliders.owner[body]:
+        if deep >= 0 and colliders.owner[deep] == colliders.owner[body]:
             skipped = True
         for i in range(edges):
             if colliders.owner[colliders.edge_a[near.edge[i]]] == colliders.owner[body]:
@@ -287,7 +283,7 @@ def _was_penetrating(
 
 
 @inner_kernel
-def find_entered(
+def _find_deep_contact(
     p: int, colliders: Colliders, outline: Outline, bounds: FloatRows, kept: KeptContacts, first: int, last: int,
     contacts: Contacts, count: int,
 ) -> tuple[int, int]:  # fmt: skip
@@ -372,7 +368,7 @@ def _beside(e: int, end: int, colliders: Colliders) -> int:
 
 
 @inner_kernel
-def find_tips(
+def _find_tips(
     p: int, h: float, box: FloatRows, terrain: Terrain, colliders: Colliders, contacts: Contacts, dynamic: int,
     particles: int, count: int,
 ) -> int:  # fmt: skip
@@ -386,7 +382,7 @@ def find_tips(
             continue
         i = _next_tip(-1, k, box, terrain)
         while i >= 0:
-            count = collide_tip(e, i, particles, h, terrain, colliders, contacts, count)
+            count = _collide_tip(e, i, particles, h, terrain, colliders, contacts, count)
             i = _next_tip(i, k, box, terrain)
     return count
 
@@ -406,23 +402,21 @@ def _next_tip(last: int, k: int, box: FloatRows, terrain: Terrain) -> int:
             i = terrain.cell_tip[entry]
             if i <= last or (found >= 0 and i >= found):
                 continue
-            x = terrain.vertex[terrain.tip[i], 0]
-            y = terrain.vertex[terrain.tip[i], 1]
+            x, y = terrain.vertex[terrain.tip[i], 0], terrain.vertex[terrain.tip[i], 1]
             if box[k, 0] <= x <= box[k, 2] and box[k, 1] <= y <= box[k, 3]:
                 found = i
     return found
 
 
 @inner_kernel
-def collide_tip(
+def _collide_tip(
     e: int, i: int, first: int, h: float, terrain: Terrain, colliders: Colliders, contacts: Contacts, count: int
 ) -> int:
     """Contact of an edge of a body with tip i of terrain; the number of contacts then.
 
     first: the vertex at which those of terrain begin.
     """
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
+    a, b = colliders.edge_a[e], colliders.edge_b[e]
     v = first + terrain.tip[i]
     if not may_collide(a, v, colliders):
         return count
@@ -446,11 +440,9 @@ def meet_tip(
     Then the place along the edge that meets it, the normal from the tip towards the edge and the distance along that
     now. Where the nearest place of the edge is an end of it, that is hit as a particle.
     """
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
+    a, b = colliders.edge_a[e], colliders.edge_b[e]
     ax, ay, dx, dy = segment_of(a, b, colliders.position)
-    px = colliders.position[v, 0] - ax
-    py = colliders.position[v, 1] - ay
+    px, py = colliders.position[v, 0] - ax, colliders.position[v, 1] - ay
     squared = dx * dx + dy * dy
     if not squared > SHORTEST:
         return False, 0.0, 0.0, 0.0, 0.0
@@ -527,8 +519,7 @@ def carry_over(contacts: Contacts, count: int, kept: KeptContacts, kept_count: i
     begin = 0
     for c in range(count):
         p = contacts.particle[c]
-        contacts.impulse[c, 0] = 0.0
-        contacts.impulse[c, 1] = 0.0
+        contacts.impulse[c, 0] = contacts.impulse[c, 1] = 0.0
         contacts.impact[c] = 0.0
         while begin < kept_count and kept.particle[begin] < p:
             begin += 1

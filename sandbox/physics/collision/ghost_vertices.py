@@ -45,13 +45,11 @@ def passes_beside(
     i: which of the edges that it is near; gap [m]: to that edge.
     """
     e = near.edge[i]
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
+    a, b = colliders.edge_a[e], colliders.edge_b[e]
     ax, ay, dx, dy = segment_of(a, b, colliders.position)
     squared = dx * dx + dy * dy
     # w . n of the normal towards p, times its distance
-    px = colliders.position[p, 0] - ax - near.share[i] * dx
-    py = colliders.position[p, 1] - ay - near.share[i] * dy
+    px, py = colliders.position[p, 0] - ax - near.share[i] * dx, colliders.position[p, 1] - ay - near.share[i] * dy
     approach = -(wx * px + wy * py)
     if not (approach > 0.0 and squared > SHORTEST):
         return False
@@ -60,10 +58,9 @@ def passes_beside(
     if 0.0 <= share <= 1.0:
         return False
     v = a if share < 0.0 else b
-    x = colliders.position[p, 0] + when * wx
-    y = colliders.position[p, 1] + when * wy
+    x, y = colliders.position[p, 0] + when * wx, colliders.position[p, 1] + when * wy
     goes_on = is_covered(e, v, x, y, colliders) or is_ghost_vertex(p, e, v, x, y, colliders, near, edges)
-    return goes_on and not is_concave(p, e, v, colliders, near, edges)
+    return goes_on and not _is_concave(p, e, v, colliders, near, edges)
 
 
 @inner_kernel
@@ -74,12 +71,10 @@ def is_ghost_vertex(p: int, e: int, v: int, x: float, y: float, colliders: Colli
     """
     height = GHOST_HEIGHT * colliders.radius[p]
     slack = GHOST_GAP * colliders.radius[p]
-    vx = colliders.position[v, 0]
-    vy = colliders.position[v, 1]
+    vx, vy = colliders.position[v, 0], colliders.position[v, 1]
     for j in range(edges):
         f = near.edge[j]
-        a = colliders.edge_a[f]
-        b = colliders.edge_b[f]
+        a, b = colliders.edge_a[f], colliders.edge_b[f]
         if f == e or a == v or b == v:
             continue
         ax, ay, dx, dy = segment_of(a, b, colliders.position)
@@ -106,7 +101,7 @@ def is_ghost_vertex(p: int, e: int, v: int, x: float, y: float, colliders: Colli
 
 
 @inner_kernel
-def is_concave(p: int, e: int, v: int, colliders: Colliders, near: Near, edges: int) -> bool:
+def _is_concave(p: int, e: int, v: int, colliders: Colliders, near: Near, edges: int) -> bool:
     """Whether what goes on at end v of an edge rises towards p, a loose disc, or goes on straight."""
     if not is_loose(p, colliders):
         return False
@@ -184,7 +179,7 @@ def rises_ahead(
                    + (colliders.position[p, 1] - colliders.position[v, 1]) * dy) / squared  # fmt: skip
     along = sign * (wx * dx + wy * dy) / squared
     met = here + max(0.0, gap) / approach * along
-    if here + AHEAD * along < 0.0 or met > 1.0 or not is_concave(p, e, v, colliders, near, edges):
+    if here + AHEAD * along < 0.0 or met > 1.0 or not _is_concave(p, e, v, colliders, near, edges):
         return False, 0.0, 0.0, 0.0, False
     return True, nx, ny, gap, met >= 0.0
 
@@ -262,15 +257,13 @@ def time_to_circle(dx: float, dy: float, wx: float, wy: float, reach: float) -> 
 @inner_kernel
 def is_covered(e: int, v: int, x: float, y: float, colliders: Colliders) -> bool:
     """Whether an edge that meets vertex v, but for e (-1: any), has a place nearer to (x, y) than that."""
-    vx = colliders.position[v, 0]
-    vy = colliders.position[v, 1]
+    vx, vy = colliders.position[v, 0], colliders.position[v, 1]
     for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
         f = colliders.edge_of[at]
         if f == e:
             continue
         other = colliders.edge_a[f] if colliders.edge_a[f] != v else colliders.edge_b[f]
-        dx = colliders.position[other, 0] - vx
-        dy = colliders.position[other, 1] - vy
+        dx, dy = colliders.position[other, 0] - vx, colliders.position[other, 1] - vy
         if (x - vx) * dx + (y - vy) * dy > CORNER * (dx * dx + dy * dy):
             return True
     return False
@@ -287,8 +280,7 @@ def owns_corner(e: int, v: int, x: float, y: float, colliders: Colliders) -> boo
 @inner_kernel
 def corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
     """Sum of the normals of the solid edges that meet in a vertex."""
-    nx = 0.0
-    ny = 0.0
+    nx, ny = 0.0, 0.0
     for at in range(colliders.edge_start[v], colliders.edge_start[v + 1]):
         e = colliders.edge_of[at]
         if colliders.side[e] != 0:

@@ -130,8 +130,7 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
         when = time_to_circle(dx, dy, wx, wy, reach)
         if when > 1.0 or not reach > 0.0:
             return count
-        nx = (dx + when * wx) / reach
-        ny = (dy + when * wy) / reach
+        nx, ny = (dx + when * wx) / reach, (dy + when * wy) / reach
         gap = -when * (wx * nx + wy * ny)
     else:
         if gap > MARGIN * reach + max(travel, _closing(px, py, qx, qy, dx, dy, distance)):
@@ -153,8 +152,7 @@ def _is_corner_before(p: int, dx: float, dy: float, colliders: Colliders) -> boo
 @inlined_kernel
 def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> int:
     """Note where the particle lies to an edge that it may touch; the number of edges noted then."""
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
+    a, b = colliders.edge_a[e], colliders.edge_b[e]
     if a == p or b == p or not may_collide(p, a, colliders):
         return count
     if colliders.inverse_mass[p] + colliders.inverse_mass[a] + colliders.inverse_mass[b] == 0.0:
@@ -281,8 +279,7 @@ def _is_known(p: int, e: int, begun: int, count: int, dynamic: int, colliders: C
 @inlined_kernel
 def _allowed_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) -> tuple[float, float]:
     # The way of a particle in a step of h [s], as edges on which it lies let it go, or the corner that is nearest.
-    wx = h * colliders.velocity[p, 0]
-    wy = h * colliders.velocity[p, 1]
+    wx, wy = h * colliders.velocity[p, 0], h * colliders.velocity[p, 1]
     nearest = -1
     lies = False
     for _ in range(2):
@@ -312,8 +309,7 @@ def _allowed_way(p: int, h: float, colliders: Colliders, near: Near, edges: int)
 @inlined_kernel
 def _cut_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Colliders, near: Near) -> tuple[float, float]:
     e = near.edge[j]
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
+    a, b = colliders.edge_a[e], colliders.edge_b[e]
     share = near.share[j]
     nx = (colliders.position[p, 0] - place_on(e, share, 0, colliders)) / near.distance[j]
     ny = (colliders.position[p, 1] - place_on(e, share, 1, colliders)) / near.distance[j]
@@ -387,14 +383,12 @@ def _collide_outside(
     soonest = 2.0
     met = -1
     met_share = 0.0
-    met_x = 0.0
-    met_y = 0.0
+    met_x, met_y = 0.0, 0.0
     met_gap = 0.0
     begun = count
     for j in range(first, edges):
         e = near.edge[j]
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
+        a, b = colliders.edge_a[e], colliders.edge_b[e]
         if colliders.owner[a] != owner:
             continue
         reach = colliders.radius[p] + colliders.radius[a]
@@ -476,8 +470,7 @@ def _touch_edge(
         when = time_to_circle(px, py, wx, wy, reach)
         if when >= 2.0 or not reach > 0.0:
             return False, 0.0, 0.0, gap
-        nx = (px + when * wx) / reach
-        ny = (py + when * wy) / reach
+        nx, ny = (px + when * wx) / reach, (py + when * wy) / reach
         gap = -when * (wx * nx + wy * ny)
     return True, nx, ny, gap
 
@@ -506,8 +499,7 @@ def _sweep_edge(
     if reach > 0.0:
         for end in range(2):
             v = a if end == 0 else colliders.edge_b[e]
-            vx = x - colliders.position[v, 0]
-            vy = y - colliders.position[v, 1]
+            vx, vy = x - colliders.position[v, 0], y - colliders.position[v, 1]
             when = time_to_circle(vx, vy, wx, wy, reach)
             if not (when <= 1.0 and when < soonest):
                 continue
@@ -515,7 +507,6 @@ def _sweep_edge(
             if owns_corner(e, v, ox, oy, colliders) and not is_ghost_vertex(p, e, v, ox, oy, colliders, near, edges):
                 soonest = when
                 found = float(end)
-                nx = (vx + when * wx) / reach
-                ny = (vy + when * wy) / reach
+                nx, ny = (vx + when * wx) / reach, (vy + when * wy) / reach
                 gap = -when * (wx * nx + wy * ny)
     return soonest, found, nx, ny, gap

@@ -5,7 +5,7 @@ is bent, and the edges of which both ends are pinned: terrain of their own, as t
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import (
     Arena,
@@ -17,6 +17,7 @@ from sandbox.physics.arena import (
     new_floats,
     new_slot_rows,
     new_slots,
+    new_tuple,
 )
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.types import Colliders
@@ -65,14 +66,14 @@ class FormEdges(NamedTuple):
 class PairScratch(NamedTuple):
     """Scratch. Of edges (e,): key, listed; start (s+1,). Of pairs of one form: one, other, order, spare, distance."""
 
-    key: Slots
-    listed: Slots
-    start: Slots
-    one: Slots
-    other: Slots
-    order: Slots
-    spare: Slots
-    distance: Floats
+    key: Annotated[Slots, "edges"]
+    listed: Annotated[Slots, "edges"]
+    start: Annotated[Slots, "shapes + 1"]
+    one: Annotated[Slots, "pairs"]
+    other: Annotated[Slots, "pairs"]
+    order: Annotated[Slots, "pairs"]
+    spare: Annotated[Slots, "pairs"]
+    distance: Annotated[Floats, "pairs"]
 
 
 class Outline(NamedTuple):
@@ -81,25 +82,25 @@ class Outline(NamedTuple):
     Shapes are the owners of edges of bodies, in the order of their edges.
     """
 
-    edge_a: Slots
-    edge_b: Slots
-    side: Slots
-    number: Slots
-    edge_start: Slots
-    edge_of: Slots
-    near_start: Slots
-    near_of: Slots
-    solid: SlotRows  # (k, 2): first edge and one past the last of each owner with a solid edge; terrain's last
-    owner: Slots
-    shielded: Flags  # particles inside a solid body that no torn spring lays bare; discs do not hit them
-    attached: Flags  # (n,): particles that a spring or a constraint holds
-    dynamic: Slots  # (2,): edges of bodies, and how many rows of solid are bodies'
-    shape: Slots  # by vertex, -1: none
-    solid_of: Slots  # by shape: its row of solid, -1: it has lines alone
-    member_start: Slots
-    member: Slots  # particles of shape s: member[member_start[s]:member_start[s + 1]]
+    edge_a: Annotated[Slots, "every"]
+    edge_b: Annotated[Slots, "every"]
+    side: Annotated[Slots, "every"]
+    number: Annotated[Slots, "every"]
+    edge_start: Annotated[Slots, "vertices + 1"]
+    edge_of: Annotated[Slots, "2 * every"]
+    near_start: Annotated[Slots, "particles + 1"]
+    near_of: Annotated[Slots, "2 * springs"]
+    solid: Annotated[SlotRows, "every, 2"]  # by owner with a solid edge: its first, one past its last; terrain last
+    owner: Annotated[Slots, "vertices"]
+    shielded: Annotated[Flags, "particles"]  # inside a solid body, no torn spring lays it bare: discs do not hit it
+    attached: Annotated[Flags, "particles"]  # (n,): particles that a spring or a constraint holds
+    dynamic: Annotated[Slots, "2"]  # (2,): edges of bodies, and how many rows of solid are bodies'
+    shape: Annotated[Slots, "vertices"]  # by vertex, -1: none
+    solid_of: Annotated[Slots, "springs"]  # by shape: its row of solid, -1: it has lines alone
+    member_start: Annotated[Slots, "springs + 1"]
+    member: Annotated[Slots, "particles"]  # particles of shape s: member[member_start[s]:member_start[s + 1]]
     close: CloseEdges  # edges of lines alone that were made close to each other
-    spring_end: Slots  # one particle of each spring
+    spring_end: Annotated[Slots, "springs"]  # one particle of each spring
     pins: Terrain  # edges of bodies with both ends pinned, as terrain; chain = the edge
 
 
@@ -107,13 +108,13 @@ class OutlineScratch(NamedTuple):
     """Scratch: rank (v,) = the number of a vertex's owner, ascending; by owner: start (v+1,), ways, flag; others long
     enough for twice the springs and all vertices."""
 
-    rank: Slots
-    start: Slots
-    ways: Slots
-    flag: Flags
-    one: Slots
-    other: Slots
-    third: Slots
+    rank: Annotated[Slots, "vertices + 1"]
+    start: Annotated[Slots, "vertices + 1"]
+    ways: Annotated[Slots, "vertices + 1"]
+    flag: Annotated[Flags, "vertices"]
+    one: Annotated[Slots, "longest"]
+    other: Annotated[Slots, "longest"]
+    third: Annotated[Slots, "longest"]
 
 
 @inner_kernel
@@ -121,15 +122,16 @@ def new_outline(state: State, arena: Arena) -> Outline:
     """The outline of a world's bodies, as its topology is now; nothing of it may be read where the arena is full."""
     particles, springs = state.owner.shape[0], state.spring_active.shape[0]
     vertices = particles + state.terrain.vertex.shape[0]
-    room, counts = _room(particles, springs, vertices, state.terrain.edge_a.shape[0], arena), new_slots(arena, COUNTS)
-    start, longest = mark(arena), max(vertices, 2 * springs)
-    work = OutlineScratch(
-        new_slots(arena, vertices + 1), new_slots(arena, vertices + 1), new_slots(arena, vertices + 1),
-        new_flags(arena, vertices), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
+    room = new_tuple(
+        Outline, arena, every=springs + state.terrain.edge_a.shape[0], particles=particles, springs=springs,
+        vertices=vertices, close=_no_close_edges(arena), pins=_no_pins(arena),
     )  # fmt: skip
+    counts = new_slots(arena, COUNTS)
+    start, longest = mark(arena), max(vertices, 2 * springs)
+    work = new_tuple(OutlineScratch, arena, vertices=vertices, longest=longest)
     if is_full(arena):
         return room
-    derive_edges(state, room, counts, work)
+    _derive_edges(state, room, counts, work)
     give_back(arena, start)
     every, shapes = counts[ALL_EDGES], counts[SHAPES]
     a, b, side = room.edge_a[: counts[EDGES]], room.edge_b[: counts[EDGES]], room.side[:every]
@@ -144,21 +146,7 @@ def new_outline(state: State, arena: Arena) -> Outline:
 
 
 @inner_kernel
-def _room(particles: int, springs: int, vertices: int, edges: int, arena: Arena) -> Outline:
-    # With room for edges of all springs; edges: of terrain.
-    every = springs + edges
-    return Outline(
-        new_slots(arena, every), new_slots(arena, every), new_slots(arena, every), new_slots(arena, every),
-        new_slots(arena, vertices + 1), new_slots(arena, 2 * every), new_slots(arena, particles + 1),
-        new_slots(arena, 2 * springs), new_slot_rows(arena, every, 2), new_slots(arena, vertices),
-        new_flags(arena, particles), new_flags(arena, particles), new_slots(arena, 2), new_slots(arena, vertices),
-        new_slots(arena, springs), new_slots(arena, springs + 1), new_slots(arena, particles), no_close_edges(arena),
-        new_slots(arena, springs), no_pins(arena),
-    )  # fmt: skip
-
-
-@inner_kernel
-def derive_edges(state: State, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
+def _derive_edges(state: State, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
     """Fill in an outline, all but its close edges and pins, and say in counts (COUNTS,) how much of it."""
     owners = _rank_owners(state, outline.owner, work)
     chosen = _choose_edges(state, owners, outline, work)
@@ -325,8 +313,7 @@ def _find_shielded(state: State, chosen: int, outline: Outline, work: OutlineScr
     for s in range(state.spring_active.shape[0]):
         bare = not state.spring_active[s] or state.edge[s] != NO_EDGE
         if bare and state.material[s] != GRAB_MATERIAL:
-            shielded[state.particle_a[s]] = False
-            shielded[state.particle_b[s]] = False
+            shielded[state.particle_a[s]] = shielded[state.particle_b[s]] = False
 
 
 @inner_kernel
@@ -334,32 +321,29 @@ def close_edges(form: FloatRows, a: Slots, b: Slots, shape: Slots, solid_of: Slo
     """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
     edges, shapes = a.shape[0], solid_of.shape[0]
     if edges == 0:
-        return no_close_edges(arena)
+        return _no_close_edges(arena)
     longest, room = min(edges, MOST_EDGES), KEPT * edges
     pairs = max(longest * longest // 2, CLASSES)
     found = CloseEdges(
         new_slots(arena, shapes + 1), new_slot_rows(arena, room, 2), new_floats(arena, room), new_floats(arena, shapes)
     )
     start = mark(arena)
-    work = PairScratch(
-        new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, shapes + 1), new_slots(arena, pairs),
-        new_slots(arena, pairs), new_slots(arena, pairs), new_slots(arena, pairs), new_floats(arena, pairs),
-    )  # fmt: skip
+    work = new_tuple(PairScratch, arena, edges=edges, shapes=shapes, pairs=pairs)
     if is_full(arena):
         return found
-    count = find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
+    count = _find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
     give_back(arena, start)
     return CloseEdges(found.start, found.edge[:count], found.distance[:count], found.beyond)
 
 
 @inner_kernel
-def no_close_edges(arena: Arena) -> CloseEdges:
+def _no_close_edges(arena: Arena) -> CloseEdges:
     """Lay out an empty list of close edges."""
     return CloseEdges(new_slots(arena, 1), new_slot_rows(arena, 0, 2), new_floats(arena, 0), new_floats(arena, 0))
 
 
 @inner_kernel
-def find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> int:
+def _find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> int:
     """Find the close edges of the forms that are lines alone, solid_of below 0; how many pairs there are."""
     shapes = given.solid_of.shape[0]
     for e in range(given.a.shape[0]):
@@ -403,10 +387,8 @@ def _find_pairs(first: int, last: int, given: FormEdges, work: PairScratch) -> i
 @inner_kernel
 def _apart(one: int, other: int, given: FormEdges) -> float:
     # How far apart two edges are that have no common end and do not cross; -1: they have, or do.
-    a = given.a[one]
-    b = given.b[one]
-    c = given.a[other]
-    d = given.b[other]
+    a, b = given.a[one], given.b[one]
+    c, d = given.a[other], given.b[other]
     if a in (c, d) or b in (c, d):
         return -1.0
     c_left, of_c = _end_from(one, c, given)
@@ -423,10 +405,8 @@ def _end_from(edge: int, p: int, given: FormEdges) -> tuple[bool, float]:
     # On which side of the line along an edge a place is, and the square of how far it is from the edge.
     a = given.a[edge]
     form = given.form
-    wx = form[given.b[edge], 0] - form[a, 0]
-    wy = form[given.b[edge], 1] - form[a, 1]
-    x = form[p, 0] - form[a, 0]
-    y = form[p, 1] - form[a, 1]
+    wx, wy = form[given.b[edge], 0] - form[a, 0], form[given.b[edge], 1] - form[a, 1]
+    x, y = form[p, 0] - form[a, 0], form[p, 1] - form[a, 1]
     share = (wx * x + wy * y) * (1.0 / max(wx * wx + wy * wy, SHORTEST))
     is_left = wx * y - wy * x > 0.0
     share = min(max(share, 0.0), 1.0)
@@ -470,10 +450,10 @@ def pinned_edges(state: State, edge_a: Slots, edge_b: Slots, side: Slots, arena:
     work = GridScratch(new_floats(arena, edges), new_slots(arena, edges), new_slots(arena, edges))
     if is_full(arena):
         return found
-    count = find_pinned(state, edge_a, edge_b, side, found, work)
+    count = _find_pinned(state, edge_a, edge_b, side, found, work)
     give_back(arena, start)
     if count == 0:
-        return no_pins(arena)
+        return _no_pins(arena)
     cells, entries = found.size[0] * found.size[1], 4 * count
     cell_start, tip_start = new_slots(arena, cells + 1), new_slots(arena, cells + 1)
     found = _with_cells(found, count, cell_start, new_slots(arena, entries), tip_start)
@@ -489,7 +469,7 @@ def pinned_edges(state: State, edge_a: Slots, edge_b: Slots, side: Slots, arena:
 
 
 @inner_kernel
-def no_pins(arena: Arena) -> Terrain:
+def _no_pins(arena: Arena) -> Terrain:
     """Lay out pinned edges for a world that has none."""
     none, nothing = new_slots(arena, 0), new_float_rows(arena, 0, 2)
     pins = Terrain(
@@ -504,7 +484,7 @@ def no_pins(arena: Arena) -> Terrain:
 
 @inner_kernel
 def _new_pins(edges: int, arena: Arena) -> Terrain:
-    none = no_pins(arena)
+    none = _no_pins(arena)
     return Terrain(
         new_float_rows(arena, 2 * edges, 2), new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, edges),
         new_slots(arena, edges), new_floats(arena, edges), new_floats(arena, edges), new_floats(arena, edges),
@@ -524,16 +504,14 @@ def _with_cells(pins: Terrain, count: int, cell_start: Slots, cell_edge: Slots, 
 
 
 @inner_kernel
-def find_pinned(state: State, edge_a: Slots, edge_b: Slots, side: Slots, pins: Terrain, work: GridScratch) -> int:
+def _find_pinned(state: State, edge_a: Slots, edge_b: Slots, side: Slots, pins: Terrain, work: GridScratch) -> int:
     """Fill in the edges that are pinned, and corner, cell and size of their grid; how many there are."""
     count = 0
     for e in range(edge_a.shape[0]):
-        a = edge_a[e]
-        b = edge_b[e]
+        a, b = edge_a[e], edge_b[e]
         if not (_is_still(a, state) and _is_still(b, state)):
             continue
-        dx = state.position[b, 0] - state.position[a, 0]
-        dy = state.position[b, 1] - state.position[a, 1]
+        dx, dy = state.position[b, 0] - state.position[a, 0], state.position[b, 1] - state.position[a, 1]
         if dx == 0.0 and dy == 0.0:
             continue
         for axis in range(2):
@@ -573,12 +551,12 @@ def new_colliders(terrain: Terrain, outline: Outline, pairs: int, arena: Arena) 
         new_flags(arena, total), new_flags(arena, total), new_slot_rows(arena, pairs, 3), new_slots(arena, 1),
     )  # fmt: skip
     if not is_full(arena):
-        fill_in_terrain(terrain, colliders)
+        _fill_in_terrain(terrain, colliders)
     return colliders
 
 
 @inner_kernel
-def fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
+def _fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
     """Fill in the vertices of terrain, and the groups of all vertices as those are."""
     particles = colliders.owner.shape[0] - terrain.vertex.shape[0]
     for v in range(colliders.owner.shape[0]):

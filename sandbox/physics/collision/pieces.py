@@ -72,7 +72,7 @@ def part(
         _mark_torn(state, state.particle_b[springs[k]], work.torn)
     _find_soft(state, work)
     _find_whole(state, good, start, listed, work)
-    while cut_articulation(state, work.torn, work.beside, gone, work.articulation):
+    while _cut_articulation(state, work.torn, work.beside, gone, work.articulation):
         end_constraints(state, start, listed, gone)
         _find_whole(state, good, start, listed, work)
     _outline_pieces(state, work)
@@ -96,7 +96,7 @@ def _find_soft(state: State, work: PieceScratch) -> None:
     # Which of the torn bodies have triangles that keep their areas, whole or not, and which have solid edges.
     for k in range(state.constraint_kind.shape[0]):
         first = work.torn[state.corner_particle[state.constraint_first[k]]]
-        if first >= 0 and is_triangle(state, k):
+        if first >= 0 and _is_triangle(state, k):
             work.has_triangles[first] = True
     for s in range(state.edge.shape[0]):
         first = work.torn[state.particle_a[s]]
@@ -110,14 +110,14 @@ def _find_whole(state: State, good: GoodValues, start: Slots, listed: Slots, wor
     for k in range(state.constraint_kind.shape[0] - 1):
         if _is_ended_triangle(state, k, work.torn) and _is_ended_triangle(state, k + 1, work.torn):
             _halve_other_way(state, good, k, start, listed)
-    find_sides(state, work.torn, start, listed, work.beside)
+    _find_sides(state, work.torn, start, listed, work.beside)
 
 
 @inner_kernel
 def _is_ended_triangle(state: State, k: int, torn: Slots) -> bool:
     return (
         not state.constraint_active[k]
-        and is_triangle(state, k)
+        and _is_triangle(state, k)
         and torn[state.corner_particle[state.constraint_first[k]]] >= 0
     )
 
@@ -148,11 +148,11 @@ def _halve_other_way(state: State, good: GoodValues, k: int, start: Slots, liste
     particle, form, area = state.corner_particle, state.corner_form, state.constraint_rest[k, 1]
     b, x, y, d = particle[beyond], particle[after], particle[last], particle[other]
     one, two = doubled_area_of(beyond, after, other, form), doubled_area_of(beyond, other, last, form)
-    is_one = acts_between(state, b, x, start, listed) and acts_between(state, x, d, start, listed)
-    is_two = acts_between(state, d, y, start, listed) and acts_between(state, y, b, start, listed)
+    is_one = _acts_between(state, b, x, start, listed) and _acts_between(state, x, d, start, listed)
+    is_two = _acts_between(state, d, y, start, listed) and _acts_between(state, y, b, start, listed)
     if not (one * area > 0.0 and two * area > 0.0 and (is_one or is_two)):
         return
-    if not acts_between(state, b, d, start, listed):
+    if not _acts_between(state, b, d, start, listed):
         return
     bx, by, xx, xy = form[beyond, 0], form[beyond, 1], form[after, 0], form[after, 1]
     yx, yy, dx, dy = form[last, 0], form[last, 1], form[other, 0], form[other, 1]
@@ -161,7 +161,14 @@ def _halve_other_way(state: State, good: GoodValues, k: int, start: Slots, liste
         _place_corner(state, good, at, b, bx, by)
         _place_corner(state, good, at + 1, x if t == 0 else d, xx if t == 0 else dx, xy if t == 0 else dy)
         _place_corner(state, good, at + 2, d if t == 0 else y, dx if t == 0 else yx, dy if t == 0 else yy)
-        _keep_area(state, good, k + t, inflation)
+        # What a triangle keeps from now on, as its form has it.
+        rest = state.constraint_rest
+        measure_rest(AREA, state.corner_form, at, at + TRIANGLE_CORNERS, rest, k + t, state.corner_weight)
+        rest[k + t, 0] *= inflation
+        for axis in range(2):
+            good.constraint_rest[k + t, axis] = rest[k + t, axis]
+        for c in range(at, at + TRIANGLE_CORNERS):
+            good.corner_weight[c] = state.corner_weight[c]
         state.constraint_active[k + t] = is_one if t == 0 else is_two
 
 
@@ -170,20 +177,6 @@ def _place_corner(state: State, good: GoodValues, corner: int, particle: int, x:
     state.corner_particle[corner] = particle
     state.corner_form[corner, 0] = good.corner_form[corner, 0] = x
     state.corner_form[corner, 1] = good.corner_form[corner, 1] = y
-
-
-@inner_kernel
-def _keep_area(state: State, good: GoodValues, k: int, inflation: float) -> None:
-    # What a triangle keeps from now on, as its form has it.
-    first = state.constraint_first[k]
-    measure_rest(
-        AREA, state.corner_form, first, first + TRIANGLE_CORNERS, state.constraint_rest, k, state.corner_weight
-    )
-    state.constraint_rest[k, 0] *= inflation
-    for axis in range(2):
-        good.constraint_rest[k, axis] = state.constraint_rest[k, axis]
-    for c in range(first, first + TRIANGLE_CORNERS):
-        good.corner_weight[c] = state.corner_weight[c]
 
 
 @inner_kernel
@@ -223,10 +216,10 @@ def _number_pieces(state: State, work: PieceScratch) -> None:
 
 
 @inner_kernel
-def cut_articulation(state: State, torn: Slots, beside: Slots, gone: Flags, work: ArticulationScratch) -> bool:
+def _cut_articulation(state: State, torn: Slots, beside: Slots, gone: Flags, work: ArticulationScratch) -> bool:
     """Take out the springs by which the first articulation point of torn bodies holds its smaller parts; whether any.
 
-    torn (n,), beside (m,): see `find_sides`; gone (m,): what was taken out is added.
+    torn (n,), beside (m,): see `_find_sides`; gone (m,): what was taken out is added.
     """
     for p in range(work.rims.shape[0]):
         work.rims[p] = 0
@@ -265,7 +258,7 @@ def _find_parts(state: State, point: int, torn: Slots, work: ArticulationScratch
         if point not in (state.particle_a[s], state.particle_b[s]) and _holds(state, s, torn):
             join(label, state.particle_a[s], state.particle_b[s])
     for k in range(state.constraint_kind.shape[0]):
-        if is_whole_triangle(state, k):
+        if _is_whole_triangle(state, k):
             first, has_point, other = state.constraint_first[k], False, -1
             for c in range(first, first + TRIANGLE_CORNERS):
                 has_point = has_point or state.corner_particle[c] == point
@@ -295,19 +288,19 @@ def _part_at(state: State, point: int, torn: Slots, gone: Flags, work: Articulat
 
 
 @inner_kernel
-def is_triangle(state: State, k: int) -> bool:
+def _is_triangle(state: State, k: int) -> bool:
     """Whether a constraint is the area of a triangle, whole or ended."""
     return state.constraint_kind[k] == AREA and state.constraint_corners[k] == TRIANGLE_CORNERS
 
 
 @inner_kernel
-def is_whole_triangle(state: State, k: int) -> bool:
+def _is_whole_triangle(state: State, k: int) -> bool:
     """Whether a constraint is the area of a triangle, and acts."""
-    return state.constraint_active[k] and is_triangle(state, k)
+    return state.constraint_active[k] and _is_triangle(state, k)
 
 
 @inner_kernel
-def acts_between(state: State, p: int, q: int, start: Slots, listed: Slots) -> bool:
+def _acts_between(state: State, p: int, q: int, start: Slots, listed: Slots) -> bool:
     """Whether a spring acts between two particles; those of p: listed[start[p]:start[p + 1]]."""
     for at in range(start[p], start[p + 1]):
         s = listed[at]
@@ -346,13 +339,13 @@ def _side_is_lost(p: int, q: int, state: State, start: Slots, listed: Slots, gon
 
 
 @inner_kernel
-def find_sides(state: State, torn: Slots, start: Slots, listed: Slots, beside: Slots) -> None:
+def _find_sides(state: State, torn: Slots, start: Slots, listed: Slots, beside: Slots) -> None:
     """Find on which sides of springs (m,) whole triangles lie: AT_LEFT, AT_RIGHT, added up, of torn bodies (n,)."""
     for s in range(beside.shape[0]):
         beside[s] = 0
     for k in range(state.constraint_kind.shape[0]):
         corner = state.constraint_first[k]
-        if is_whole_triangle(state, k) and torn[state.corner_particle[corner]] >= 0:
+        if _is_whole_triangle(state, k) and torn[state.corner_particle[corner]] >= 0:
             is_left = state.constraint_rest[k, 1] > 0.0
             for c in range(TRIANGLE_CORNERS):
                 p = state.corner_particle[corner + c]

@@ -52,8 +52,7 @@ def choose_partners(contacts: Contacts, count: int, attached: Flags, colliders: 
             if p >= 0:
                 touched[p] = True
     for c in range(count):
-        contacts.partner[c, 0] = -1
-        contacts.partner[c, 1] = -1
+        contacts.partner[c, 0] = contacts.partner[c, 1] = -1
         if not contacts.friction[c] > 0.0:
             continue
         p = contacts.particle[c]
@@ -99,8 +98,7 @@ def load_arms(contacts: Contacts, count: int, colliders: Colliders) -> None:
     """How the particles of the first `count` contacts turn; see Contacts."""
     for c in range(count):
         p = contacts.particle[c]
-        a = contacts.end_a[c]
-        b = contacts.end_b[c]
+        a, b = contacts.end_a[c], contacts.end_b[c]
         disc = a if b < 0 else -1
         contacts.turning[c, 0] = colliders.turning[p]
         contacts.turning[c, 1] = colliders.turning[a] if disc >= 0 else 0.0
@@ -115,15 +113,14 @@ def load_arms(contacts: Contacts, count: int, colliders: Colliders) -> None:
                 arm = min(1.0 + MARGIN + FAST, _reach_of(contacts, c, colliders) / reach)
             contacts.arm[c, 0] = arm
             contacts.arm[c, 1] = arm if disc >= 0 else 0.0
-        load_couple(contacts, c, 0, p, arm * colliders.radius[p], colliders)
-        load_couple(contacts, c, 1, a, arm * colliders.radius[a] if a >= 0 else 0.0, colliders)
+        _load_couple(contacts, c, 0, p, arm * colliders.radius[p], colliders)
+        _load_couple(contacts, c, 1, a, arm * colliders.radius[a] if a >= 0 else 0.0, colliders)
 
 
 @inner_kernel
-def load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, colliders: Colliders) -> None:
+def _load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, colliders: Colliders) -> None:
     """The couple of a contact's particle (of 0) or its end_a (of 1), which is p, for an arm [m]."""
-    contacts.couple[c, 2 * of] = 0.0
-    contacts.couple[c, 2 * of + 1] = 0.0
+    contacts.couple[c, 2 * of] = contacts.couple[c, 2 * of + 1] = 0.0
     q = contacts.partner[c, of]
     if q >= 0:
         dx, dy = difference(p, q, colliders.position)
@@ -223,8 +220,7 @@ def find_bounces(
         contacts.bounce[c] = -1.0
         if contacts.restitution[c] == 0.0:
             continue
-        nx = contacts.normal[c, 0]
-        ny = contacts.normal[c, 1]
+        nx, ny = contacts.normal[c, 0], contacts.normal[c, 1]
         u0 = 0.0
         u = 0.0
         for end in range(3):

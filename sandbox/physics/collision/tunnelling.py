@@ -46,8 +46,7 @@ def clamp_at_terrain(
     for p in range(position.shape[0]):
         if not active[p] or inverse_mass[p] == 0.0 or (collides[p] & TERRAIN_GROUP) == 0:
             continue
-        wx = h * velocity[p, 0] + ahead[p, 0]
-        wy = h * velocity[p, 1] + ahead[p, 1]
+        wx, wy = h * velocity[p, 0] + ahead[p, 0], h * velocity[p, 1] + ahead[p, 1]
         if near_start[p] == near_start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
             continue
         stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
@@ -60,8 +59,7 @@ def stop_at_terrain(p: int, position: FloatRows, velocity: FloatRows, terrain: T
 
     Returned: whether it would.
     """
-    wx = h * velocity[p, 0]
-    wy = h * velocity[p, 1]
+    wx, wy = h * velocity[p, 0], h * velocity[p, 1]
     stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
     _cut(p, stops, x - wx, y - wy, velocity, velocity, h)
     return stops > 0
@@ -72,8 +70,7 @@ def _cut(p: int, stops: int, dx: float, dy: float, velocity: FloatRows, ahead: F
     # Take from a particle's velocity what its way was cut by, -d; all that moves it, where it was cut too often.
     if stops > STOPS:
         for axis in range(2):
-            velocity[p, axis] = 0.0
-            ahead[p, axis] = 0.0
+            velocity[p, axis] = ahead[p, axis] = 0.0
     elif stops > 0:
         velocity[p, 0] += dx / h
         velocity[p, 1] += dy / h
@@ -102,8 +99,7 @@ def _crossing(x: float, y: float, wx: float, wy: float, terrain: Terrain) -> tup
     soonest = 2.0
     found = -1
     distance = 0.0
-    nx = 0.0
-    ny = 0.0
+    nx, ny = 0.0, 0.0
     for row in range(bottom, top + 1):
         for column in range(left, right + 1):
             at = row * terrain.size[0] + column
@@ -183,12 +179,10 @@ def clamp_at_pins(
     for p in range(position.shape[0]):
         if colliders.collides[p] == 0 or inverse_mass[p] == 0.0:
             continue
-        wx = h * velocity[p, 0] + ahead[p, 0]
-        wy = h * velocity[p, 1] + ahead[p, 1]
+        wx, wy = h * velocity[p, 0] + ahead[p, 0], h * velocity[p, 1] + ahead[p, 1]
         if near_start[p] == near_start[p + 1] and _stays_in(box, p, position[p, 0], position[p, 1], wx, wy):
             continue
-        x = wx
-        y = wy
+        x, y = wx, wy
         stops = 0
         while stops <= STOPS:
             e, signed, nx, ny = _pin_crossing(p, position[p, 0], position[p, 1], x, y, outline, colliders)
@@ -211,15 +205,13 @@ def _pin_crossing(
     soonest = 2.0
     found = -1
     distance = 0.0
-    nx = 0.0
-    ny = 0.0
+    nx, ny = 0.0, 0.0
     for row in range(bottom, top + 1):
         for column in range(left, right + 1):
             at = row * terrain.size[0] + column
             for entry in range(terrain.cell_start[at], terrain.cell_start[at + 1]):
                 e = terrain.cell_edge[entry]
-                a = colliders.edge_a[terrain.chain[e]]
-                b = colliders.edge_b[terrain.chain[e]]
+                a, b = colliders.edge_a[terrain.chain[e]], colliders.edge_b[terrain.chain[e]]
                 if colliders.owner[a] == colliders.owner[p] or not may_collide(p, a, colliders):
                     continue
                 if are_joined(p, a, colliders) or are_joined(p, b, colliders):
@@ -248,8 +240,7 @@ def clamp_at_tips(
     first = velocity.shape[0]
     per_cell = 1.0 / terrain.cell[0]
     for e in range(dynamic):
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
+        a, b = colliders.edge_a[e], colliders.edge_b[e]
         if colliders.collides[a] == 0 or colliders.collides[b] == 0 or inverse_mass[a] + inverse_mass[b] == 0.0:
             continue
         ax, ay = colliders.position[a, 0], colliders.position[a, 1]
@@ -264,8 +255,7 @@ def clamp_at_tips(
             cell = row * terrain.size[0]
             for entry in range(terrain.tip_start[cell + left], terrain.tip_start[cell + right + 1]):
                 i = terrain.cell_tip[entry]
-                x = terrain.vertex[terrain.tip[i], 0]
-                y = terrain.vertex[terrain.tip[i], 1]
+                x, y = terrain.vertex[terrain.tip[i], 0], terrain.vertex[terrain.tip[i], 1]
                 v = first + terrain.tip[i]
                 if low_x <= x <= high_x and low_y <= y <= high_y and may_collide(a, v, colliders):
                     stopped_here = _stop_edge(e, i, v, velocity, inverse_mass, terrain, colliders, holds, h)
@@ -279,8 +269,7 @@ def _stop_edge(
     holds: bool, h: float,
 ) -> bool:  # fmt: skip
     found = False
-    a = colliders.edge_a[e]
-    b = colliders.edge_b[e]
+    a, b = colliders.edge_a[e], colliders.edge_b[e]
     for _ in range(STOPS):
         meets, share, nx, ny, distance = meet_tip(e, i, v, 0.0, 0.0, h, velocity, terrain, colliders)
         if not meets:
@@ -294,8 +283,7 @@ def _stop_edge(
         found = True
         if holds:
             for axis in range(2):
-                velocity[a, axis] = 0.0
-                velocity[b, axis] = 0.0
+                velocity[a, axis] = velocity[b, axis] = 0.0
             break
         j = missing / (h * answer)
         velocity[a, 0] += (1.0 - share) * j * inverse_mass[a] * nx
@@ -324,8 +312,7 @@ def stop_discs(
             continue
         if (kind != EDGE and kind != INSIDE) or colliders.shape[p] >= 0 or inverse_mass[p] == 0.0:
             continue
-        a = contacts.end_a[c]
-        b = contacts.end_b[c]
+        a, b = contacts.end_a[c], contacts.end_b[c]
         s = colliders.shape[a]
         if outline.solid_of[s] < 0:
             continue
@@ -333,8 +320,7 @@ def stop_discs(
         if e < 0 or colliders.side[e] == 0:
             continue
         share = contacts.share[c]
-        nx = contacts.normal[c, 0]
-        ny = contacts.normal[c, 1]
+        nx, ny = contacts.normal[c, 0], contacts.normal[c, 1]
         vx = velocity[p, 0] - (1.0 - share) * velocity[a, 0] - share * velocity[b, 0]
         vy = velocity[p, 1] - (1.0 - share) * velocity[a, 1] - share * velocity[b, 1]
         # What was deeper before is pushed out by its contact, and comes no deeper.
@@ -365,8 +351,7 @@ def _stop_at_tip(
     if s < 0 or outline.solid_of[s] < 0:
         return
     share = contacts.share[c]
-    nx = contacts.normal[c, 0]
-    ny = contacts.normal[c, 1]
+    nx, ny = contacts.normal[c, 0], contacts.normal[c, 1]
     vx = (1.0 - share) * velocity[a, 0] + share * velocity[b, 0]
     vy = (1.0 - share) * velocity[a, 1] + share * velocity[b, 1]
     deepest = max((1.0 - CLOSEST) * colliders.radius[a], -contacts.gap[c])

@@ -1,8 +1,8 @@
 """Types of collision: the arrays in which kernels find contacts, and the contacts that they find."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_int32s, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 
@@ -48,11 +48,11 @@ class Colliders(NamedTuple):
 class Near(NamedTuple):
     """Edges near one particle: which, place along it, distance and signed distance [m], region (-1, 1: at an end)."""
 
-    edge: Slots
-    share: Floats
-    distance: Floats
-    signed: Floats
-    region: Slots
+    edge: Annotated[Slots, f"{MOST_NEAR}"]
+    share: Annotated[Floats, f"{MOST_NEAR}"]
+    distance: Annotated[Floats, f"{MOST_NEAR}"]
+    signed: Annotated[Floats, f"{MOST_NEAR}"]
+    region: Annotated[Slots, f"{MOST_NEAR}"]
 
 
 class Contacts(NamedTuple):
@@ -62,35 +62,35 @@ class Contacts(NamedTuple):
     surfaces.py.
     """
 
-    particle: Slots
-    feature: Slots  # 3 number + kind
-    end_a: Slots  # end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain;
-    end_b: Slots  # -1, b: the particle and b are the ends of an edge that lies on a corner of terrain
-    share: Floats  # place along the edge
-    normal: FloatRows  # towards the particle
-    gap: Floats  # [m], below 0: penetration
-    friction: Floats
-    restitution: Floats
-    bounce: Floats  # [m/s]: velocity along the normal that is left where it bounces, below 0: it does not
-    impulse: FloatRows  # [N s] (k, 2): along normal and tangent
-    turning: FloatRows  # [1/kg] (k, 2): of the particle and of the other disc, as arm and ratio
-    arm: FloatRows  # that of friction over the radius
-    ratio: FloatRows  # the smaller radius over its own
-    rolling: Floats  # rolling resistance of both
-    partner: SlotRows  # (k, 2): which particles the couple is taken from, -1: none
-    couple: FloatRows  # (k, 4): of the particle and of end_a, by a unit impulse
-    impact: Floats  # [N s]: what impacts of this tick gave along the normal; not in impulse, and starts no sweep
-    belt: Floats  # [m/s]: of both surfaces together, each to the right of who stands on it
-    ahead: Flags  # with an edge of a hollow that a disc comes to from others, on which it lies (ghost_vertices.py)
+    particle: Annotated[Slots, "rows"]
+    feature: Annotated[Slots, "rows"]  # 3 number + kind
+    end_a: Annotated[Slots, "rows"]  # end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain;
+    end_b: Annotated[Slots, "rows"]  # -1, b: particle and b are the ends of an edge that lies on a corner of terrain
+    share: Annotated[Floats, "rows"]  # place along the edge
+    normal: Annotated[FloatRows, "rows, 2"]  # towards the particle
+    gap: Annotated[Floats, "rows"]  # [m], below 0: penetration
+    friction: Annotated[Floats, "rows"]
+    restitution: Annotated[Floats, "rows"]
+    bounce: Annotated[Floats, "rows"]  # [m/s]: velocity along the normal where it bounces, below 0: it does not
+    impulse: Annotated[FloatRows, "rows, 2"]  # [N s] (k, 2): along normal and tangent
+    turning: Annotated[FloatRows, "rows, 2"]  # [1/kg] (k, 2): of the particle and of the other disc, as arm and ratio
+    arm: Annotated[FloatRows, "rows, 2"]  # that of friction over the radius
+    ratio: Annotated[FloatRows, "rows, 2"]  # the smaller radius over its own
+    rolling: Annotated[Floats, "rows"]  # rolling resistance of both
+    partner: Annotated[SlotRows, "rows, 2"]  # (k, 2): which particles the couple is taken from, -1: none
+    couple: Annotated[FloatRows, "rows, 4"]  # (k, 4): of the particle and of end_a, by a unit impulse
+    impact: Annotated[Floats, "rows"]  # [N s]: what impacts of this tick gave; not in impulse, starts no sweep
+    belt: Annotated[Floats, "rows"]  # [m/s]: of both surfaces together, each to the right of who stands on it
+    ahead: Annotated[Flags, "rows"]  # with an edge that a disc comes to from others, on which it lies
 
 
 class KeptContacts(NamedTuple):
     """The part of a step's contacts that the next step reads: see Contacts."""
 
-    particle: Int32s
-    feature: Slots
-    impulse: FloatRows
-    impact: Floats
+    particle: Annotated[Int32s, "contacts"]
+    feature: Annotated[Slots, "contacts"]
+    impulse: Annotated[FloatRows, "contacts, 2"]
+    impact: Annotated[Floats, "contacts"]
 
 
 @inner_kernel
@@ -120,8 +120,7 @@ def couple_of(contacts: Contacts, c: int, end: int) -> tuple[float, float]:
     """What an impulse of 1 across adds to that of an end of a contact, beside its share along the tangent."""
     if end < TOUCHING - 1:
         return contacts.couple[c, 2 * end], contacts.couple[c, 2 * end + 1]
-    x = 0.0
-    y = 0.0
+    x, y = 0.0, 0.0
     for of in range(2):
         is_end_b = contacts.partner[c, of] == contacts.end_b[c]
         if is_end_b if end == TOUCHING - 1 else of == end - TOUCHING and not is_end_b:
@@ -190,29 +189,4 @@ def sort_contacts(contacts: Contacts, source: Slots, place: Slots) -> None:
 @inner_kernel
 def new_contacts(arena: Arena, most: int) -> Contacts:
     """Lay out contacts for a step to fill in, and a row to sort them by."""
-    count = most + 1
-    return Contacts(
-        new_slots(arena, count), new_slots(arena, count), new_slots(arena, count), new_slots(arena, count),
-        new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count), new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
-        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
-        new_floats(arena, count), new_slot_rows(arena, count, 2), new_float_rows(arena, count, 4),
-        new_floats(arena, count), new_floats(arena, count), new_flags(arena, count),
-    )  # fmt: skip
-
-
-@inner_kernel
-def new_kept_contacts(arena: Arena, count: int) -> KeptContacts:
-    """Empty kept contacts, to be filled in."""
-    return KeptContacts(
-        new_int32s(arena, count), new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count)
-    )
-
-
-@inner_kernel
-def new_near(arena: Arena) -> Near:
-    """Edges near a particle, to be filled in."""
-    return Near(
-        new_slots(arena, MOST_NEAR), new_floats(arena, MOST_NEAR), new_floats(arena, MOST_NEAR),
-        new_floats(arena, MOST_NEAR), new_slots(arena, MOST_NEAR),
-    )  # fmt: skip
+    return new_tuple(Contacts, arena, rows=most + 1)

@@ -14,6 +14,10 @@ from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_flags, ne
 from sandbox.physics.arrays import Flags, Floats, SlotRows, Slots
 from sandbox.physics.collision.pieces import PieceScratch, end_constraints, part
 from sandbox.physics.commands.changes import (
+    IS_PINNED,
+    NO_PLACE,
+    NOTHING_TOUCHES,
+    free_body,
     grab,
     is_body,
     move_listed,
@@ -26,7 +30,6 @@ from sandbox.physics.commands.changes import (
     shake,
     unpin,
 )
-from sandbox.physics.commands.freeing import IS_PINNED, NO_PLACE, NOTHING_TOUCHES, free_body
 from sandbox.physics.components import list_body
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.marks import BANK_UNOPENED, LONGEST_RAMP
@@ -338,7 +341,13 @@ def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers:
     elif kind == SCALE_MASS:
         return 0 if scale_mass(state, good, slots[1], numbers[0]) else _refused(TOO_HEAVY, 1)
     elif kind == MOVE_BODY:
-        return _move(state, good, slots, numbers, arena)
+        begin(arena)
+        label, body = new_slots(arena, state.owner.shape[0]), new_slots(arena, state.owner.shape[0])
+        if is_full(arena):
+            return NO_ARENA
+        count = list_body(state, slots[1], label, body)
+        is_moved = move_listed(state, good, body[:count], numbers[0], numbers[1], slots[2] != 0)
+        return 0 if is_moved else _refused(TOO_FAR, 1)
     elif kind == FREE:
         return _free(state, good, slots[1], arena)
     elif kind == SET_SOLVER:
@@ -411,17 +420,6 @@ def _set_solver(world: Commanded, slots: Slots, numbers: Floats, arena: Arena) -
     if slots[7] > 0 and is_other:
         firm_up(world.state, slots[7])
     return 0
-
-
-@inner_kernel
-def _move(state: State, good: GoodValues, slots: Slots, numbers: Floats, arena: Arena) -> int:
-    begin(arena)
-    label, body = new_slots(arena, state.owner.shape[0]), new_slots(arena, state.owner.shape[0])
-    if is_full(arena):
-        return NO_ARENA
-    count = list_body(state, slots[1], label, body)
-    is_moved = move_listed(state, good, body[:count], numbers[0], numbers[1], slots[2] != 0)
-    return 0 if is_moved else _refused(TOO_FAR, 1)
 
 
 @inner_kernel

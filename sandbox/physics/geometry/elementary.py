@@ -38,8 +38,7 @@ def product_pair(a: float, b: float) -> tuple[float, float]:
     """The product of two numbers as a pair."""
     product = a * b
     a_up, b_up = _SPLITTER * a, _SPLITTER * b
-    a_up = a_up - (a_up - a)
-    b_up = b_up - (b_up - b)
+    a_up, b_up = a_up - (a_up - a), b_up - (b_up - b)
     a_low, b_low = a - a_up, b - b_up
     return product, ((a_up * b_up - product) + a_up * b_low + a_low * b_up) + a_low * b_low
 

@@ -75,8 +75,7 @@ def with_spin(motion: RigidMotion, inertia: float, momentum: float) -> RigidMoti
 @inlined_kernel
 def with_turn(motion: RigidMotion, m: float, x: float, y: float, u: float, v: float) -> RigidMotion:
     """A motion with the inertia and angular momentum of one more mass at (x, y), of the velocity (u, v)."""
-    dx = x - motion.x
-    dy = y - motion.y
+    dx, dy = x - motion.x, y - motion.y
     return with_spin(motion, m * (dx * dx + dy * dy), momentum_about(motion, m, x, y, u, v))
 
 

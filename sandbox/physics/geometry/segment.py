@@ -70,8 +70,7 @@ def difference(a: int, b: int, rows: FloatRows) -> tuple[float, float]:
 @inlined_kernel
 def segment_of(a: int, b: int, position: FloatRows) -> tuple[float, float, float, float]:
     """Where the segment from row a to row b of positions (n, 2) begins, and its way [m]: x, y, dx, dy."""
-    ax = position[a, 0]
-    ay = position[a, 1]
+    ax, ay = position[a, 0], position[a, 1]
     return ax, ay, position[b, 0] - ax, position[b, 1] - ay
 
 
@@ -89,8 +88,7 @@ def closest_on_segment(p: int, a: int, b: int, position: FloatRows) -> tuple[flo
         return 0.0, distance, distance, -1
     share = nearest_share(px, py, dx, dy)
     region = -1 if share <= 0.0 else 1 if share >= 1.0 else 0
-    qx = px - share * dx
-    qy = py - share * dy
+    qx, qy = px - share * dx, py - share * dy
     return share, math.sqrt(qx * qx + qy * qy), (px * dy - py * dx) / math.sqrt(squared), region
 
 

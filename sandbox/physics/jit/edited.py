@@ -83,7 +83,9 @@ def _made(folder: Path, checked: bool) -> tuple[Path, dict[str, Any]]:
             for left in (folder, *folder.parent.glob(f"{_ASIDE}*")):
                 shutil.rmtree(left, ignore_errors=True)
             _compile(folder, checked)
-            _forget_others(folder)
+            others = [one for one in folder.parent.iterdir() if (one / "manifest.json").exists()]
+            for old in sorted(others, key=lambda one: one.stat().st_mtime, reverse=True)[_KEPT:]:
+                shutil.rmtree(old, ignore_errors=True)
             found = _kept(folder)
     if found is None:
         raise NoLibrary(f"the library that was compiled cannot be read in {folder}")
@@ -112,9 +114,3 @@ def _compile(folder: Path, checked: bool) -> None:
 
 def _last_line(text: str) -> str:
     return text.strip().rpartition("\n")[2]
-
-
-def _forget_others(folder: Path) -> None:
-    found = [one for one in folder.parent.iterdir() if (one / "manifest.json").exists()]
-    for old in sorted(found, key=lambda one: one.stat().st_mtime, reverse=True)[_KEPT:]:
-        shutil.rmtree(old, ignore_errors=True)

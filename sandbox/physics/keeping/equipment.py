@@ -126,8 +126,8 @@ class Equipment(NamedTuple):
     """The constant part of a world, by the names that World has for it.
 
     Names of materials and the strains that each bears; driven parts; bodies that keep areas, and the constraints of
-    each; bodies that may be stiff by their form; hulls, which displace water (water/pools.py); what joined the world
-    while it ran, in order.
+    each; bodies that may be stiff by their form; hulls, which displace water (displacers.py); what joined while the
+    world ran, in order.
     """
 
     material_names: tuple[str, ...]

@@ -1,4 +1,8 @@
-"""Joining: a kit is packed, the world gets rows for it, and the kernel appends it."""
+"""Joining: a kit is packed, the world gets rows for it, and the kernel appends it.
+
+A kit is bodies as rows and nothing else. It is packed into whole numbers and numbers, column after column in the order
+of SLOT_TABLE and NUMBER_TABLE: docs/kits.md has them all.
+"""
 
 import math
 from collections.abc import Mapping
@@ -12,30 +16,150 @@ from sandbox.physics.arrays import Floats, Slots, empty
 from sandbox.physics.breaking import MaterialLimits, StrainLimits, unlimited
 from sandbox.physics.commands.command import DENIED
 from sandbox.physics.commands.command_table import RefusedCommand
+from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.driving import Actuators, drives_of
 from sandbox.physics.jit import bundle
 from sandbox.physics.joints.joint_set import wheels_of
 from sandbox.physics.keeping.arguments import FARTHEST
-from sandbox.physics.kits.kit import (
+from sandbox.physics.kits.kit_kernels import (
     BAD_PLACE,
     HEADER,
     MOST,
     NO_LIMIT_ROWS,
     NO_ROWS,
-    NUMBER_TABLE,
+    NUMBER_COLUMNS,
     PART_NAMES,
     PARTICLES,
-    RANGES,
-    SLOT_TABLE,
-    TABLE,
+    SLOT_COLUMNS,
     TOO_MANY,
-    NumberColumn,
-    SlotColumn,
+    Joinable,
+    join,
 )
-from sandbox.physics.kits.kit_kernels import Joinable, join
-from sandbox.physics.state import Family, Range
+from sandbox.physics.marks import ALL_GROUPS, LAW_HOOKE, SOLID_RIGHT
+from sandbox.physics.state import BY_NAME, FINITE, NOT_NEGATIVE, ROLLING_RESISTANCE, SHARE, Family, Range
 from sandbox.physics.water.displacers import HULL_NUMBERS, Water
 from sandbox.physics.world import World
+
+FAR = 2**53
+
+
+class SlotColumn(NamedTuple):
+    """A column of whole numbers: its part and name, the least and the most, or the part whose rows it counts.
+
+    usual: of a row that says nothing; None: each row says it.
+    """
+
+    part: str
+    name: str
+    low: int
+    high: int
+    of: str = ""
+    usual: int | None = None
+
+
+class NumberColumn(NamedTuple):
+    """A column of numbers: its part and name, its range, its unit, and what a row has that says nothing.
+
+    usual: NaN = as placed, or as the world has it; None: each row says it.
+    """
+
+    part: str
+    name: str
+    within: Range
+    unit: str
+    usual: float | None = None
+
+
+def _state(part: str, name: str, column: str, usual: float | None = None) -> NumberColumn:
+    """A column with the range and the unit of one of the table of state."""
+    found = BY_NAME[column]
+    return NumberColumn(part, name, found.within or FINITE, found.unit, usual)
+
+
+SLOT_TABLE = (
+    SlotColumn("particles", "body", -FAR, FAR),
+    SlotColumn("particles", "group", 0, ALL_GROUPS),
+    SlotColumn("particles", "collides", 0, ALL_GROUPS),
+    SlotColumn("particles", "pinned", 0, 1, usual=0),
+    SlotColumn("particles", "rolls", 0, 1, usual=1),
+    SlotColumn("springs", "a", -FAR, FAR),
+    SlotColumn("springs", "b", -FAR, FAR),
+    SlotColumn("springs", "law", 0, LAW_HOOKE, usual=0),
+    SlotColumn("springs", "material", 0, 0, "materials", usual=0),
+    SlotColumn("springs", "edge", 0, SOLID_RIGHT, usual=0),
+    SlotColumn("constraints", "kind", AREA, BEND, usual=AREA),
+    SlotColumn("constraints", "corners", 3, FAR, usual=3),
+    SlotColumn("constraints", "material", -1, 0, "materials", usual=0),
+    SlotColumn("corners", "particle", 0, 0, "particles"),
+    SlotColumn("muscles", "spring", 0, 0, "springs"),
+    SlotColumn("muscles", "period", 2, 1_000_000),
+    SlotColumn("hydraulics", "spring", 0, 0, "springs"),
+    SlotColumn("hydraulics", "part", 0, 0, "parts"),
+    SlotColumn("hydraulics", "returns", 0, 1, usual=0),
+    SlotColumn("motors", "hub", 0, 0, "particles"),
+    SlotColumn("motors", "part", 0, 0, "parts"),
+    SlotColumn("motors", "rim", 0, FAR),
+    SlotColumn("rims", "particle", 0, 0, "particles"),
+    SlotColumn("materials", "slot", 0, FAR),
+    SlotColumn("hulls", "body", 0, 0, "bodies"),
+    SlotColumn("hulls", "spring", 0, 0, "springs"),
+    SlotColumn("hulls", "turned", 0, 1, usual=0),
+    SlotColumn("free_wheels", "wheel", 0, 0, "bodies"),
+    SlotColumn("free_wheels", "mount", 0, 0, "bodies"),
+)
+_LENGTH, _STRAIN, _FORCE = Range(0.0, 1e18), Range(0.0, math.inf), Range(0.0, math.inf, is_above=True)
+NUMBER_TABLE = (
+    _state("particles", "x", "position"),
+    _state("particles", "y", "position"),
+    _state("particles", "vx", "velocity", 0.0),
+    _state("particles", "vy", "velocity", 0.0),
+    _state("particles", "mass", "mass", 1.0),
+    _state("particles", "radius", "radius", 0.05),
+    _state("particles", "friction", "friction", 0.0),
+    _state("particles", "restitution", "restitution", 0.0),
+    _state("particles", "gravity_scale", "gravity_scale", 1.0),
+    _state("particles", "rolling", "rolling", ROLLING_RESISTANCE),
+    _state("particles", "angle", "angle", 0.0),
+    _state("particles", "spin", "spin", 0.0),
+    _state("springs", "rest_length", "rest_length", math.nan),
+    _state("springs", "stiffness", "stiffness", 0.5),
+    _state("springs", "damping", "damping", 0.9),
+    _state("springs", "hooke_stiffness", "hooke_stiffness", 0.0),
+    _state("springs", "hooke_damping", "hooke_damping", 0.0),
+    _state("springs", "lowest_mode", "lowest_mode", 0.0),
+    NumberColumn("springs", "belt", FINITE, "m/s", 0.0),
+    NumberColumn("constraints", "area", FINITE, "m^2", math.nan),
+    _state("constraints", "stiffness", "constraint_stiffness", 0.5),
+    _state("constraints", "damping", "constraint_damping", 0.9),
+    _state("constraints", "lowest_mode", "constraint_lowest_mode", 0.0),
+    _state("corners", "x", "corner_form", math.nan),
+    _state("corners", "y", "corner_form", math.nan),
+    NumberColumn("parts", "value", Range(-1.0, 1.0), "1", 0.0),
+    NumberColumn("muscles", "amplitude", Range(0.0, 0.9), "1"),
+    NumberColumn("muscles", "phase", Range(0.0, 1.0), "1", 0.0),
+    NumberColumn("muscles", "force", _FORCE, "N", math.inf),
+    NumberColumn("hydraulics", "shortest", NOT_NEGATIVE, "m"),
+    NumberColumn("hydraulics", "longest", NOT_NEGATIVE, "m"),
+    NumberColumn("hydraulics", "rate", NOT_NEGATIVE, "m/s"),
+    NumberColumn("hydraulics", "force", _FORCE, "N", math.inf),
+    NumberColumn("motors", "speed", FINITE, "rad/s"),
+    NumberColumn("motors", "torque", NOT_NEGATIVE, "N m"),
+    NumberColumn("materials", "tension", _STRAIN, "1", math.nan),
+    NumberColumn("materials", "compression", _STRAIN, "1", math.nan),
+    NumberColumn("materials", "yielding", _STRAIN, "1", math.nan),
+    NumberColumn("materials", "yield_share", SHARE, "1", math.nan),
+)
+# The tables as kernels take them: of a column of slots its part, the least, the most and the part that it counts, -1:
+# none; of one of numbers its part; of numbers the lowest, the highest, and whether NaN may be.
+SLOT_BOUNDS = np.array(
+    [[PART_NAMES.index(c.part), c.low, c.high, PART_NAMES.index(c.of) if c.of else -1] for c in SLOT_TABLE], np.int64
+)
+assert (len(SLOT_TABLE), len(SLOT_TABLE) + len(NUMBER_TABLE)) == (SLOT_COLUMNS, NUMBER_COLUMNS)
+TABLE: Slots = np.append(SLOT_BOUNDS.reshape(-1), [PART_NAMES.index(c.part) for c in NUMBER_TABLE]).astype(np.int64)
+RANGES: Floats = np.array(
+    [[c.within.lowest, c.within.high, c.usual is not None and math.isnan(c.usual)] for c in NUMBER_TABLE], np.float64
+).reshape(-1)
+
 
 # Why a kit cannot join; {} = what of it, and what is wrong.
 NOT_A_TABLE, NOT_ROWS = "{}: a table of columns is needed", "{}: a list of {} rows is needed"

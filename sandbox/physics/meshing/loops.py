@@ -338,15 +338,13 @@ def simplify(stroke: FloatRows, tolerance: float, arena: Arena) -> int:
     far = 0
     farthest = 0.0
     for k in range(1, count):
-        dx = points[k, 0] - points[0, 0]
-        dy = points[k, 1] - points[0, 1]
+        dx, dy = points[k, 0] - points[0, 0], points[k, 1] - points[0, 1]
         if dx * dx + dy * dy > farthest:
             farthest = dx * dx + dy * dy
             far = k
     points[count, 0] = points[0, 0]
     points[count, 1] = points[0, 1]
-    kept[0] = 1
-    kept[far] = 1
+    kept[0] = kept[far] = 1
     kept[count] = 1
     _split_ways(points, count, tolerance, kept)
     left = 0
@@ -371,8 +369,7 @@ def _split_ways(points: FloatRows, count: int, tolerance: float, kept: Slots) ->
         most = tolerance
         for k in range(first + 1, last):
             share = nearest_share(points[k, 0] - x, points[k, 1] - y, dx, dy)
-            away_x = points[k, 0] - x - share * dx
-            away_y = points[k, 1] - y - share * dy
+            away_x, away_y = points[k, 0] - x - share * dx, points[k, 1] - y - share * dy
             away = math.sqrt(away_x * away_x + away_y * away_y)
             if away > most:
                 most = away
@@ -454,11 +451,9 @@ def kept_corners(way: Way, spacing: float) -> tuple[int, float]:
     for k in range(count):
         way.order[k] = k
         x, y = place_at(way.start[k] - window, way)
-        back_x = way.corner[k, 0] - x
-        back_y = way.corner[k, 1] - y
+        back_x, back_y = way.corner[k, 0] - x, way.corner[k, 1] - y
         x, y = place_at(way.start[k] + window, way)
-        ahead_x = x - way.corner[k, 0]
-        ahead_y = y - way.corner[k, 1]
+        ahead_x, ahead_y = x - way.corner[k, 0], y - way.corner[k, 1]
         both = math.sqrt(back_x * back_x + back_y * back_y) * math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y)
         way.cosine[k] = (back_x * ahead_x + back_y * ahead_y) / both
         way.sine[k] = (back_x * ahead_y - back_y * ahead_x) / both
@@ -573,10 +568,8 @@ def _clear(
     a: int, b: int, border: FloatRows, slanted: FloatRows, spacing: float, part: GridPart, points: Flags
 ) -> None:
     # Take out points near a side.
-    start_x = border[a, 0] / spacing
-    start_y = border[a, 1] / spacing
-    side_x = border[b, 0] / spacing - start_x
-    side_y = border[b, 1] / spacing - start_y
+    start_x, start_y = border[a, 0] / spacing, border[a, 1] / spacing
+    side_x, side_y = border[b, 0] / spacing - start_x, border[b, 1] / spacing - start_y
     low = math.floor(min(slanted[a, 1], slanted[b, 1]) - AROUND)
     left = math.floor(min(slanted[a, 0], slanted[b, 0]) - AROUND)
     high = math.floor(max(slanted[a, 1], slanted[b, 1]) + AROUND)

@@ -378,15 +378,12 @@ def _worst(site: int, net: Net, stars: Stars) -> float:
 @inner_kernel
 def _sharpest(a: int, b: int, c: int, site: SlotRows) -> float:
     # Triangles inside are as small as the spacing: products of their sides are whole as floats.
-    ux = float(site[b, 0] - site[a, 0])
-    uy = float(site[b, 1] - site[a, 1])
-    vx = float(site[c, 0] - site[a, 0])
-    vy = float(site[c, 1] - site[a, 1])
+    ux, uy = float(site[b, 0] - site[a, 0]), float(site[b, 1] - site[a, 1])
+    vx, vy = float(site[c, 0] - site[a, 0]), float(site[c, 1] - site[a, 1])
     double = ux * vy - uy * vx
     if double <= 0.0:
         return math.inf
-    wx = vx - ux
-    wy = vy - uy
+    wx, wy = vx - ux, vy - uy
     # The angles at a, b and c.
     return max(ux * vx + uy * vy, max(-(ux * wx) - uy * wy, vx * wx + vy * wy)) / double
 
@@ -397,16 +394,13 @@ def _improve(site: int, net: Net, stars: Stars) -> bool:
     first = stars.start[site]
     last = stars.start[site + 1]
     before = _worst(site, net, stars)
-    x = net.site[site, 0]
-    y = net.site[site, 1]
+    x, y = net.site[site, 0], net.site[site, 1]
     # Neighbours weigh as their triangles do, so that many on one side draw no more than few on the other.
-    middle_x = 0
-    middle_y = 0
+    middle_x, middle_y = 0, 0
     for at in range(first, last):
         middle_x += net.site[stars.near[at], 0]
         middle_y += net.site[stars.near[at], 1]
-    middle_x = middle_x // (last - first)
-    middle_y = middle_y // (last - first)
+    middle_x, middle_y = middle_x // (last - first), middle_y // (last - first)
     for part in (1, 2, 4):
         net.site[site, 0] = x + (middle_x - x) // part
         net.site[site, 1] = y + (middle_y - y) // part
@@ -423,10 +417,8 @@ def _improve(site: int, net: Net, stars: Stars) -> bool:
 @inner_kernel
 def turn_of(a: int, b: int, c: int, site: SlotRows) -> int:
     """1 where c lies on the left of the way from a to b, -1 on its right, 0 on it; a, b, c: rows of sites (n, 2)."""
-    ux = site[b, 0] - site[a, 0]
-    uy = site[b, 1] - site[a, 1]
-    vx = site[c, 0] - site[a, 0]
-    vy = site[c, 1] - site[a, 1]
+    ux, uy = site[b, 0] - site[a, 0], site[b, 1] - site[a, 1]
+    vx, vy = site[c, 0] - site[a, 0], site[c, 1] - site[a, 1]
     one = float(ux) * float(vy)
     other = float(uy) * float(vx)
     bound = TURN_ERROR * (abs(one) + abs(other))
@@ -453,14 +445,10 @@ def _sign(high: int, rest: int) -> int:
 @inner_kernel
 def circle_holds(a: int, b: int, c: int, d: int, site: SlotRows, scratch: Slots) -> bool:
     """Whether d lies inside the circle through a, b and c, counter-clockwise; rows of sites (n, 2)."""
-    x = site[d, 0]
-    y = site[d, 1]
-    ax = site[a, 0] - x
-    ay = site[a, 1] - y
-    bx = site[b, 0] - x
-    by = site[b, 1] - y
-    cx = site[c, 0] - x
-    cy = site[c, 1] - y
+    x, y = site[d, 0], site[d, 1]
+    ax, ay = site[a, 0] - x, site[a, 1] - y
+    bx, by = site[b, 0] - x, site[b, 1] - y
+    cx, cy = site[c, 0] - x, site[c, 1] - y
     of_a, bound_a = _term(float(ax), float(ay), float(bx), float(by), float(cx), float(cy))
     of_b, bound_b = _term(float(bx), float(by), float(cx), float(cy), float(ax), float(ay))
     of_c, bound_c = _term(float(cx), float(cy), float(ax), float(ay), float(bx), float(by))

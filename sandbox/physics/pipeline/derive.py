@@ -19,7 +19,7 @@ from sandbox.physics.arena import (
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Pairs, new_grid
 from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.surfaces import has_belts
-from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
+from sandbox.physics.collision.types import KeptContacts, Near, new_contacts
 from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.integrate import Flight
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
@@ -158,7 +158,7 @@ def make_room(pointer: Bundle[WorldBlock], arena: Arena) -> None:
         set_field(world.workspace.delassus, "numbers", new_floats(arena, MORE_ROOM * demand[BLOCK_NUMBERS]))
         set_field(world.workspace.delassus, "columns", new_floats(arena, MORE_ROOM * demand[BLOCK_COLUMNS]))
     contacts = max(_room(world, CONTACTS), _room(world, KEPT))
-    set_field(world.collisions, "kept", new_kept_contacts(arena, contacts))
+    set_field(world.collisions, "kept", new_tuple(KeptContacts, arena, contacts=contacts))
     coupled = contacts if world.plan[HAS_CONTACTS] != 0 else 0
     active = new_active_set(coupled, particles, arena)
     terms = new_tuple(ContactConstraints, arena, contacts=coupled, particles=particles, active=active)
@@ -210,7 +210,7 @@ def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
     set_field(collisions, "colliders", new_colliders(world.state.terrain, outline, overlapping, arena))
     set_field(collisions, "grid", new_grid(objects, _room(world, ENTRIES), arena))
     set_field(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
-    set_field(collisions, "near", new_near(arena))
+    set_field(collisions, "near", new_tuple(Near, arena))
     set_field(collisions, "contacts", new_contacts(arena, contacts))
     set_field(collisions, "source", new_slots(arena, contacts))
     set_field(collisions, "place", new_slots(arena, contacts))

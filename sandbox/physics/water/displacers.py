@@ -6,7 +6,7 @@ goes on displacing: the corners of a triangle that is no more are discs, each wi
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from sandbox.physics.arena import (
     new_floats,
     new_slot_rows,
     new_slots,
+    new_tuple,
 )
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.constraints import AREA, TRIANGLE
@@ -59,7 +60,7 @@ class Pool(NamedTuple):
 
 
 class Water(NamedTuple):
-    """Pools and hulls of a world (pools.py), what it displaces, and scratch of a step."""
+    """Pools and hulls of a world, what it displaces, and scratch of a step."""
 
     pool: FloatRows
     hull: SlotRows
@@ -87,13 +88,13 @@ class WaterScratch(NamedTuple):
     anything; by owner (see _key): whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it
     is of a whole hull."""
 
-    lost: Floats
-    in_triangle: Flags
-    has_edge: Flags
-    is_joined: Flags
-    enclosed: Flags
-    is_whole: Flags
-    is_hull: Flags
+    lost: Annotated[Floats, "particles"]
+    in_triangle: Annotated[Flags, "particles"]
+    has_edge: Annotated[Flags, "particles"]
+    is_joined: Annotated[Flags, "particles"]
+    enclosed: Annotated[Flags, "2 * particles"]
+    is_whole: Annotated[Flags, "hulls"]
+    is_hull: Annotated[Flags, "springs"]
 
 
 def pools_of(pools: Sequence[Pool]) -> FloatRows:
@@ -127,7 +128,8 @@ def lay_out_water(state: State, arena: Arena, water: Water) -> None:
     set_field(water, "body", new_float_rows(arena, particles, SUMS))
     set_field(water, "wet", new_flags(arena, particles))
     scratch = mark(arena)
-    work = _new_scratch(state, water.hull, arena)
+    hulls = water.hull[water.hull.shape[0] - 1, HULL] + 1 if water.hull.shape[0] > 0 else 0
+    work = new_tuple(WaterScratch, arena, particles=particles, springs=springs, hulls=hulls)
     if is_full(arena):
         return
     triangles = _list_triangles(state, water, work)
@@ -266,17 +268,6 @@ def _list_discs(state: State, water: Water, work: WaterScratch) -> int:
         water.is_loose[count] = not work.is_joined[p]
         count += 1
     return count
-
-
-@inner_kernel
-def _new_scratch(state: State, hull: SlotRows, arena: Arena) -> WaterScratch:
-    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
-    hulls = hull[hull.shape[0] - 1, HULL] + 1 if hull.shape[0] > 0 else 0
-    return WaterScratch(
-        new_floats(arena, particles), new_flags(arena, particles), new_flags(arena, particles),
-        new_flags(arena, particles), new_flags(arena, 2 * particles), new_flags(arena, hulls),
-        new_flags(arena, springs),
-    )  # fmt: skip
 
 
 @inner_kernel

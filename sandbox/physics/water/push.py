@@ -108,9 +108,18 @@ def push_by_water(
 @inner_kernel
 def slow_spins(water: Water, state: State, h: float) -> None:
     """Slow the turning of discs in water down, in a step of h [s]; after push_by_water, which finds those."""
-    for k in range(water.pool.shape[0]):
+    # The rim of a disc is a side that moves along itself: 2 pi r density slow_drag (r omega) r, and I = m r^2 / 2.
+    pool = water.pool
+    for k in range(pool.shape[0]):
         for i in range(water.disc.shape[0]):
-            _slow_spin(water, k, i, state, h)
+            p = water.disc[i]
+            if state.spin[p] == 0.0 or not water.wet[p]:
+                continue
+            r, x, y = state.radius[p], state.position[p, 0], state.position[p, 1]
+            if pool[k, LEFT] <= x and x <= pool[k, RIGHT] and pool[k, BOTTOM] <= y and r > 0.0:
+                share = disc_area_below(pool[k, TOP] - y, r) / (PI * r * r)
+                resists = h * 4.0 * PI * r * pool[k, DENSITY] * pool[k, SLOW] * share * state.inverse_mass[p]
+                state.spin[p] /= 1.0 + resists
 
 
 @inner_kernel
@@ -122,16 +131,6 @@ def _resist(water: Water, k: int, p: int, xx: float, xy: float, yy: float) -> No
     load[p, DX] += xx * u + xy * v
     load[p, DY] += xy * u + yy * v
     water.wet[p] = True
-
-
-@inner_kernel
-def _wet_part(water: Water, k: int, a: int, b: int, position: FloatRows) -> tuple[float, float]:
-    # The part of the way from a to b that lies in pool k; empty where the second is not above the first.
-    pool = water.pool
-    dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
-    s0, s1 = clipped(position[a, 0], dx, pool[k, LEFT], pool[k, RIGHT], 0.0, 1.0)
-    s0, s1 = clipped(position[a, 1], dy, pool[k, BOTTOM], pool[k, TOP], s0, s1)
-    return s0, s1
 
 
 @inner_kernel
@@ -245,8 +244,10 @@ def _drag_edge(water: Water, k: int, i: int, state: State, start: FloatRows) -> 
     # The resistance of what is wet of it is shared by its ends as its length is.
     pool, x, s = water.pool, state.position, water.edge[i]
     a, b = state.particle_a[s], state.particle_b[s]
-    s0, s1 = _wet_part(water, k, a, b, x)
     dx, dy = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]
+    # The part of the way from a to b that lies in the pool; empty where the second is not above the first.
+    s0, s1 = clipped(x[a, 0], dx, pool[k, LEFT], pool[k, RIGHT], 0.0, 1.0)
+    s0, s1 = clipped(x[a, 1], dy, pool[k, BOTTOM], pool[k, TOP], s0, s1)
     length = math.sqrt(dx * dx + dy * dy)
     if not (s0 < s1 and length > 0.0):
         return
@@ -284,19 +285,6 @@ def _push_disc(water: Water, k: int, i: int, state: State, start: FloatRows, g: 
         share = area / (PI * radius * radius)
         resistance = pool[k, DENSITY] * share * radius * (2.0 * PI * pool[k, SLOW] + pool[k, FAST] * speed)
         _resist(water, k, p, resistance, 0.0, resistance)
-
-
-@inner_kernel
-def _slow_spin(water: Water, k: int, i: int, state: State, h: float) -> None:
-    # The rim of a disc is a side that moves along itself: 2 pi r density slow_drag (r omega) r, and I = m r^2 / 2.
-    pool, p = water.pool, water.disc[i]
-    if state.spin[p] == 0.0 or not water.wet[p]:
-        return
-    r = state.radius[p]
-    x, y = state.position[p, 0], state.position[p, 1]
-    if pool[k, LEFT] <= x and x <= pool[k, RIGHT] and pool[k, BOTTOM] <= y and r > 0.0:
-        share = disc_area_below(pool[k, TOP] - y, r) / (PI * r * r)
-        state.spin[p] /= 1.0 + h * 4.0 * PI * r * pool[k, DENSITY] * pool[k, SLOW] * share * state.inverse_mass[p]
 
 
 @inner_kernel

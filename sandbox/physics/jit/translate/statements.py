@@ -30,9 +30,9 @@ class Body(Expressions):
     def __init__(
         self, program: Program, module: str, function: ast.FunctionDef, given: dict[str, Type], result: Type
     ) -> None:
-        super().__init__(program, module, own_names(function), dict(given))
+        super().__init__(program, module, _own_names(function), dict(given))
         self.function, self.result = function, result
-        self.places: Declarations = find_places(function)
+        self.places: Declarations = _find_places(function)
         self._comments = comments(module)
         self._line = function.lineno
         self._count = 0
@@ -369,7 +369,7 @@ class Body(Expressions):
 def _in_order(body: list[ast.stmt]) -> Iterator[ast.stmt]:
     for statement in body:
         yield statement
-        for block in blocks_of(statement):
+        for block in _blocks_of(statement):
             yield from _in_order(block)
 
 
@@ -398,14 +398,14 @@ class Declarations:
     hidden: set[int] = field(default_factory=set)
 
 
-def own_names(function: ast.FunctionDef) -> dict[str, bool]:
+def _own_names(function: ast.FunctionDef) -> dict[str, bool]:
     """All names that a kernel assigns, its parameters included: whether each is so once."""
     found = [argument.arg for argument in function.args.args]
     found += [node.id for node in ast.walk(function) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
     return {name: count == 1 for name, count in Counter(found).items()}
 
 
-def targets_of(statement: ast.stmt) -> list[ast.expr]:
+def _targets_of(statement: ast.stmt) -> list[ast.expr]:
     """What a statement assigns, one after another."""
     if isinstance(statement, ast.Assign):
         return [one for target in statement.targets
@@ -413,7 +413,7 @@ def targets_of(statement: ast.stmt) -> list[ast.expr]:
     return [statement.target] if isinstance(statement, (ast.AnnAssign, ast.AugAssign)) else []
 
 
-def find_places(function: ast.FunctionDef) -> Declarations:
+def _find_places(function: ast.FunctionDef) -> Declarations:
     """Where the names of a kernel are declared."""
     found, names = Declarations(), _NamesWithin(function)
     parameters = {argument.arg for argument in function.args.args}
@@ -421,7 +421,7 @@ def find_places(function: ast.FunctionDef) -> Declarations:
     for node in ast.walk(function):
         if isinstance(node, ast.For) and isinstance(node.target, ast.Name):
             loops.setdefault(node.target.id, []).append(node)
-    for name in sorted(own_names(function).keys() - parameters - {"_"}):
+    for name in sorted(_own_names(function).keys() - parameters - {"_"}):
         own = loops.get(name, [])
         inside = {id(node) for loop in own for node in ast.walk(loop)}
         outside = any(id(node) not in inside for node in names.nodes[name])
@@ -461,7 +461,7 @@ def _is(node: ast.AST, name: str) -> bool:
     return isinstance(node, ast.Name) and node.id == name
 
 
-def blocks_of(statement: ast.stmt) -> Iterator[Statements]:
+def _blocks_of(statement: ast.stmt) -> Iterator[Statements]:
     """The blocks of a statement."""
     if isinstance(statement, (ast.If, ast.For, ast.While)):
         yield statement.body
@@ -474,7 +474,7 @@ def _place(name: str, body: Statements, found: Declarations, names: _NamesWithin
     holding = [statement for statement in body if names.holds(statement, name)]
     first = holding[0]
     if len(holding) == 1:
-        blocks = [block for block in blocks_of(first) if any(names.holds(each, name) for each in block)]
+        blocks = [block for block in _blocks_of(first) if any(names.holds(each, name) for each in block)]
         heads = [first.test] if isinstance(first, (ast.If, ast.While)) else []
         heads += [first.target, first.iter] if isinstance(first, ast.For) else []
         if len(blocks) == 1 and not any(names.holds(head, name) for head in heads):
@@ -492,4 +492,4 @@ def _begins(statement: ast.stmt, name: str, names: _NamesWithin) -> bool:
     """Whether a statement assigns a name and reads it not."""
     if not isinstance(statement, (ast.Assign, ast.AnnAssign)) or statement.value is None:
         return False
-    return any(_is(target, name) for target in targets_of(statement)) and not names.holds(statement.value, name)
+    return any(_is(target, name) for target in _targets_of(statement)) and not names.holds(statement.value, name)
