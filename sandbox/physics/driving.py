@@ -1,6 +1,6 @@
 """Actuators of a world, constant while it runs, and the springs among them, whose rest length is driven in each tick.
 
-Muscles are driven by the number of the tick, hydraulics by the value of their part; motors: see joints/motors.py.
+Muscles are driven by the number of the tick, hydraulics by the value of their part; motors: see joints/joint_set.py.
 One of limited force does not wind up: where it is held back its rest length stays as near to its length as its force
 asks for, so that it does not leap when it is let go.
 """

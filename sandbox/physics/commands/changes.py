@@ -1,7 +1,7 @@
 """What commands do to the arrays of a world, and none asks whether: hands, pins, coefficients, pushes, moves, freeing.
 
 A body that is stuck in others, or in itself, is freed into the nearest free place, where it does not come apart by
-itself (untangling/parting.py).
+itself (untangling/depenetration.py).
 """
 
 import math
