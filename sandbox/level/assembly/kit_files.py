@@ -328,7 +328,7 @@ def _row(columns: Mapping[str, Any], name: str, slot: int | None, usual: Any) ->
 _HEAD = """# Kits
 
 A kit is bodies as rows and nothing else: what joins a running world, as it was given. The command `add_body` takes one
-in place of a `body`; links and the recordings of pages hold kits. A kernel in `sandbox/physics/changing` looks at every
+in place of a `body`; links and the recordings of pages hold kits. A kernel in `sandbox/physics/kits` looks at every
 number of it, finds what follows from the rows, and appends them: the desktop and pages come to the same bits, and
 refuse the same kits in the same words. Made by `python -m sandbox.level.assembly.kit_files > docs/kits.md`.
 
