@@ -82,12 +82,6 @@ def clock(monkeypatch):
     return made
 
 
-@pytest.fixture(autouse=True)
-def a_window_that_closes_takes_no_other_along(monkeypatch):
-    """One is open for all tests of a module, while others come and go: quitting the display would leave it invalid."""
-    monkeypatch.setattr(pygame.display, "quit", pygame.event.clear)
-
-
 class Driver:
     """A person at the app: moves, clicks, types, and lets frames pass."""
 

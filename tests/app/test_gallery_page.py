@@ -15,7 +15,10 @@ def gallery_driver(tmp_path_factory):
         folder = tmp_path_factory.mktemp("gallery")
         patch.setattr("sandbox.editor.storage.preferences.platformdirs.user_data_dir", lambda *_, **__: str(folder))
         driver = Driver()
-        yield driver
+        with pytest.MonkeyPatch.context() as windows:
+            # Others come and go meanwhile: quitting the display would leave this window invalid.
+            windows.setattr(pygame.display, "quit", pygame.event.clear)
+            yield driver
         driver.app.close()
 
 
