@@ -15,7 +15,7 @@ from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.overlays import strain_tones
 from sandbox.app.draw.picture import crop_of, draw_picture, save_picture, view_of
 from sandbox.app.draw.raster.bodies import BodyRows, Flush, Outlines, Skins
-from sandbox.app.draw.raster.marks import SHEET, CellArrays
+from sandbox.app.draw.raster.mark_kernels import SHEET, CellArrays
 from sandbox.app.draw.raster.painter import BodyLayer, MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.textures import Tiles, grains, skin_table

@@ -11,7 +11,7 @@ from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.looks import ball_look, body_looks, ground_look, spring_look
 from sandbox.app.draw.picture import draw_picture
-from sandbox.app.draw.raster.marks import ACROSS, ALONG
+from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG
 from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.things.drawables import Drawables

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import pygame
 
-from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.format.shipped import shipped_folder
 
 if TYPE_CHECKING:
@@ -169,6 +168,8 @@ KEPT = "window"
 
 def kept_window() -> list[int] | None:
     """Left, top, width and height of the window of the last time [pixels]; None where nothing usable is remembered."""
+    from sandbox.editor.storage.preferences import preference
+
     kept = preference(KEPT)
     is_place = isinstance(kept, list) and len(kept) == 4 and all(type(side) is int for side in kept)
     return kept if is_place and abs(kept[0]) + abs(kept[1]) < 1 << 20 and min(kept[2:]) > 0 else None
@@ -177,6 +178,8 @@ def kept_window() -> list[int] | None:
 def keep_window(place: list[int] | None) -> None:
     """Remember left, top, width and height of the window; None leaves what was remembered."""
     if place is not None:
+        from sandbox.editor.storage.preferences import set_preference
+
         set_preference(KEPT, place)
 
 

@@ -5,7 +5,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import TERRAIN_FILL, Colour
-from sandbox.app.draw.raster.marks import ACROSS, ALONG
+from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG
 from sandbox.app.draw.raster.painter import MarkList, Painter
 
 # Coordinates beyond this [pixels] are not drawn: float rounding would bend the line, and no screen is that large.

@@ -165,8 +165,8 @@ class Renderer:
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
             if self.level is not None:
-                self._things = self._things or KeptDrawables(self.level)
-                strikes = self._things.slots_of(current.equipment.joined).strikes
+                things = self._things = self._things or KeptDrawables(self.level)
+                strikes = things.slots_of(current.equipment.joined).strikes
                 self.effects.see(current, frame.seconds, strikes, self._pools.boxes)
             place = pygame.Rect(camera.viewport)
             self._follow(frame, current, camera, overlay)
@@ -174,16 +174,13 @@ class Renderer:
                 return
             if self.has_stage:
                 with profile.part("stage"):
-                    self._backdrop.draw(
-                        painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
-                    )  # fmt: skip
+                    ground = current.terrain, self.level, self.theme, frame.tiles, self.scale
+                    self._backdrop.draw(painter, camera, *ground)
                     at = camera.project(current.terrain.vertex)
                     self._draw_belts(self._ground_belts, at, frame, camera, springs)
             with profile.part("things"):
                 if self.level is not None and self._things is not None:
-                    if overlay.earlier is not None:
-                        self._shade = self._shade or Shade(self.level)
-                        self._shade.draw(painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
+                    self._draw_shade(self.level, frame, camera, overlay)
                     self._draw_things(self._things.of(current), frame, camera)
                 self._draw_belts(self._body_belts, pixels, frame, camera, springs)
             self._draw_water(frame, current, camera)
@@ -202,6 +199,11 @@ class Renderer:
             self._draw_lit(Canvas(surface, self.compiled), pixels, current, overlay.lit)
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
         self._still.keep(surface, place)
+
+    def _draw_shade(self, level: Level, frame: Frame, camera: Camera, overlay: Overlay) -> None:
+        if overlay.earlier is not None:
+            self._shade = self._shade or Shade(level)
+            self._shade.draw(self._painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
 
     def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Note what this picture is drawn from, so that one of the same need not be drawn again."""

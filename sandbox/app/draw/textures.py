@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import BRASS, STEEL, Colour, Theme, mixed, unpacked
 from sandbox.app.draw.raster.bodies import GRAIN, INSIDE, LIT
-from sandbox.app.draw.raster.marks import ACROSS, ALONG, SHEET
+from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG, SHEET
 
 Floats = NDArray[np.float64]
 Packed = NDArray[np.uint32]

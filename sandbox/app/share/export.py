@@ -88,7 +88,6 @@ class Export:
             writer.close()
 
     def _write_movie(self, path: Path) -> Slices:
-        from sandbox.app.share.export import MovieWriter, write_soundtrack
 
         excerpt = self.excerpt
         with tempfile.TemporaryDirectory() as folder:

@@ -7,7 +7,7 @@ of how far inside and how lit gives the colour. All bodies of a layer are drawn 
 import math
 from typing import NamedTuple
 
-from sandbox.app.draw.raster.marks import from_segment, row_of_capsule
+from sandbox.app.draw.raster.mark_kernels import from_segment, row_of_capsule
 from sandbox.app.draw.raster.pixels import (
     PixelRow,
     Pixels,

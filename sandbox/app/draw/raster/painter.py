@@ -21,7 +21,7 @@ from sandbox.app.draw.raster.bodies import (
     Skins,
     paint_bodies,
 )
-from sandbox.app.draw.raster.marks import (
+from sandbox.app.draw.raster.mark_kernels import (
     ACROSS,
     ALONG,
     DISC,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import CHEEK, EYE, INK
-from sandbox.app.draw.raster.marks import DISC, GLOW, STROKE
+from sandbox.app.draw.raster.mark_kernels import DISC, GLOW, STROKE
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.things.level_slots import Actor, Frame, Piece, starts_of
 from sandbox.physics.geometry.segment import distances_from_segments

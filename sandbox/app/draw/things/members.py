@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import outline_of
 from sandbox.app.draw.looks import Look
-from sandbox.app.draw.raster.marks import DISC, STRIP, STROKE
+from sandbox.app.draw.raster.mark_kernels import DISC, STRIP, STROKE
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import TILE
 from sandbox.app.draw.things.level_slots import Actor, Frame, Join, chains_of

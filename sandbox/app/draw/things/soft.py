@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import CLOTH_STRIPE, SQUEEZED_FLUSH, STRETCHED_FLUSH, dark_edge, outline_of, packed
 from sandbox.app.draw.raster.bodies import WIDEST, BodyRows, Flush, Outlines, Skins
-from sandbox.app.draw.raster.marks import CellArrays
+from sandbox.app.draw.raster.mark_kernels import CellArrays
 from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, MarkList, Painter
 from sandbox.app.draw.raster.pixels import Loops
 from sandbox.app.draw.textures import grains, laid, skin_table, woven

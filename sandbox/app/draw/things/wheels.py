@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import SANDS, STEEL, packed
-from sandbox.app.draw.raster.marks import MARBLED, PLAIN, STRIPED, STUDDED
+from sandbox.app.draw.raster.mark_kernels import MARBLED, PLAIN, STRIPED, STUDDED
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import TILE
 from sandbox.app.draw.things.level_slots import Actor, Ball, Frame, LevelSlots, Seen
