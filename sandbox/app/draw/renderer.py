@@ -149,8 +149,7 @@ class Renderer:
         profile: Profile | None = None,
     ) -> None:
         """Draw the world at a part alpha (0..1) of the way from one snapshot to the next."""
-        profile, overlay = profile or Profile(), overlay or Overlay()
-        painter = self._painter
+        profile, overlay, painter = profile or Profile(), overlay or Overlay(), self._painter
         painter.compiled = self.compiled
         painter.begin(surface)
         with np.errstate(over="ignore", invalid="ignore"):
