@@ -1,6 +1,7 @@
 """What it takes to add something: a copy of the package gets it in as many files as the design says, and plays it."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.size import named_in
 from tests.support.package_copy import copy_of_the_package
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -518,3 +520,9 @@ print("played")
 """
     assert play(package, WINDOW + script) == "played"
     assert changed(package) == ["app/panel/clock_rows.py", "app/panel/panel.py"]
+
+
+def test_the_recipe_for_what_people_see_names_every_file_that_names_a_belt():
+    section = (ROOT / "docs/how-to-add.md").read_text(encoding="utf-8").partition("## A property that people see")[2]
+    named = re.findall(r"`([\w/]+\.(?:py|js))`", section)
+    assert sorted(named) == named_in("belt")

@@ -106,7 +106,7 @@ REST = {
     "sandbox.physics.rules.meets_zone: kind": {"POLYGON"},
     "sandbox.physics.rules.measure: kind": OF_CENTRE | OF_TERMS | {"TOUCHES"},
     "sandbox.physics.rules._of_centre: kind": RULES - OF_CENTRE,
-    "sandbox.physics.pipeline.judge._holds_of_members: terms.kind[t]": RULES - {"ALL", "ANY"},
+    "sandbox.physics.pipeline.rule_evaluation._holds_of_members: terms.kind[t]": RULES - {"ALL", "ANY"},
     # They have kernels of their own.
     "sandbox.physics.commands.command._carry_out: kind": {"ADD_BODY", "ADD_PARTICLE", "ADD_SPRING", "REMOVE"},
     "sandbox.level.plan.rules._of_metric: kind": RULES - {"SETTLED", "DISTANCE", "INSIDE"},

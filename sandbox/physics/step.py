@@ -8,7 +8,7 @@ from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.arena import FIRST_ARENA
 from sandbox.physics.pipeline.block import BROKEN, CHECKED
 from sandbox.physics.pipeline.block_owner import block_of
-from sandbox.physics.pipeline.judge import judge
+from sandbox.physics.pipeline.rule_evaluation import judge
 from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, take_back, tick
 from sandbox.physics.sanitise import Containment
 from sandbox.physics.state import COLUMNS, Family

@@ -69,7 +69,7 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.derive.derive_topology",
     "sandbox.physics.pipeline.derive.derive_hands",
     "sandbox.physics.pipeline.derive.make_room",
-    "sandbox.physics.pipeline.judge.judge",
+    "sandbox.physics.pipeline.rule_evaluation.judge",
     "sandbox.physics.commands.command.command",
     "sandbox.physics.commands.command.count_pieces",
     "sandbox.physics.commands.command.form_of_spring",
