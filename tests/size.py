@@ -102,7 +102,7 @@ def with_one_importer(found: dict[str, Module]) -> list[str]:
 
 def named_in(word: str, root: Path = ROOT) -> list[str]:
     """Files of the package that name a thing, by hand."""
-    pattern = re.compile(rf"(?<!\w)_?{word}s?(?![A-Za-z])")
+    pattern = re.compile(rf"(?<![A-Za-z]){word}s?(?![A-Za-z])")
     files = [*(root / "sandbox").rglob("*.py"), *(root / "sandbox").rglob("*.js")]
     return sorted(
         path.relative_to(root / "sandbox").as_posix()
