@@ -1,7 +1,6 @@
 """What it takes to add something: a copy of the package gets it in as many files as the design says, and plays it."""
 
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -9,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.size import named_in
 from tests.support.package_copy import copy_of_the_package
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -224,8 +222,7 @@ class CountsPage(SidePage):
 CLOCK = '''
 """ClockRows: how far the run is, and a field that sets gravity upside down."""
 
-from sandbox.app.panel.panel_rows import ROW
-from sandbox.app.panel.panel_rows import PanelSection
+from sandbox.app.panel.panel_rows import ROW, PanelSection
 from sandbox.session.commands import SetGravity
 
 
@@ -375,7 +372,7 @@ def test_an_editor_tool_is_one_file_and_its_place_in_the_palette(package):
     with_assets(package)
     put(package / "editor/tools/drawing_triangle.py", TRIANGLE)
     palette = package / "editor/tools/palette.py"
-    put(palette, "from sandbox.editor.tools.drawing_triangle import TRIANGLE\n", before="import LASSO")
+    put(palette, "from sandbox.editor.tools.drawing_triangle import TRIANGLE\n", before="import WAVE")
     palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN),", " TRIANGLE, PIN),"))
     script = """
 driver.app.documents.new()
@@ -520,9 +517,3 @@ print("played")
 """
     assert play(package, WINDOW + script) == "played"
     assert changed(package) == ["app/panel/clock_rows.py", "app/panel/panel.py"]
-
-
-def test_the_recipe_for_what_people_see_names_every_file_that_names_a_belt():
-    section = (ROOT / "docs/how-to-add.md").read_text(encoding="utf-8").partition("## A property that people see")[2]
-    named = re.findall(r"`([\w/]+\.(?:py|js))`", section)
-    assert sorted(named) == named_in("belt")

@@ -191,7 +191,7 @@ def usual_size(height: float) -> float:
 
 @dataclass(frozen=True)
 class PlayTool:
-    """A tool: its name, the keys that take it up, its line on the help page and in its tip, and its group.
+    """A tool in play: its name, the keys that take it up, its line on the help page and in its tip, and its group.
 
     make: the tool, for a function that gives the number of a new gesture. Its icon is the file of its name in
     assets/icons, unless the strip has a picture of its own for it.

@@ -1,4 +1,4 @@
-"""Plan: the expansion of a level and its slots, computed once for its check, its world and its picture."""
+"""Plan: the expansion of a level, its joints and its slots, computed once for its check, its world and its picture."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
