@@ -39,8 +39,7 @@ from sandbox.app.draw.raster.shadows import FACTOR, ShadowScratch, Thrown, paint
 from sandbox.physics import jit
 from sandbox.physics.arrays import Floats, Slots
 
-# A body whose outline has no line around it, and no grain.
-NO_LINE = 0.0
+# A body whose outline has no grain.
 NO_GRAIN = -1
 
 
