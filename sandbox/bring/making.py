@@ -171,9 +171,9 @@ def with_floor(level: Level) -> Level:
     return replaced(level, terrain=(TerrainDef(id=name, polygon=corners),))
 
 
-def free_name(wanted: str, base: str, taken: set[str]) -> str:
+def free_name(asked: str, base: str, taken: set[str]) -> str:
     """An id made of a name, different from all that are taken, which grow by it."""
-    plain = tidy(wanted) or tidy(base) or "shape"
+    plain = tidy(asked) or tidy(base) or "shape"
     name, number = plain, 2
     while name in taken:
         name, number = f"{plain} {number}", number + 1

@@ -59,9 +59,9 @@ def _pixels(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
             raise
         except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError):
             raise Unreadable("is a damaged PNG picture: its pixels cannot be read") from None
-        share = max(rgba.size) / LOOKED_AT
-        if share > 1.0:
-            size = max(1, round(rgba.size[0] / share)), max(1, round(rgba.size[1] / share))
+        ratio = max(rgba.size) / LOOKED_AT
+        if ratio > 1.0:
+            size = max(1, round(rgba.size[0] / ratio)), max(1, round(rgba.size[1] / ratio))
             rgba = rgba.resize(size, Image.Resampling.BOX)
     pixels = np.asarray(rgba, dtype=np.float64) / 255.0
     return pixels[:, :, :3], pixels[:, :, 3]

@@ -101,8 +101,8 @@ class _Reader:
     def read(self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str) -> None:
         """Take in an element and all in it; matrix: from its parent's coordinates to those of the page."""
         own = _own_properties(element, self._sheet)
-        given = {key.replace("-", "_"): value for key, value in own.items() if value != "inherit"}
-        style = replace(style, **{key: value for key, value in given.items() if key in Style.__dataclass_fields__})
+        attributes = {key.replace("-", "_"): value for key, value in own.items() if value != "inherit"}
+        style = replace(style, **{key: value for key, value in attributes.items() if key in Style.__dataclass_fields__})
         if own.get("display") == "none":
             self.drawing.left_out.add("hidden element")
             return
@@ -140,17 +140,17 @@ class _Reader:
 
     def _copy(self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str) -> None:
         link = (element.get("href") or element.get(_LINK) or "").strip()
-        wanted = self._by_id.get(link[1:]) if link.startswith("#") and len(link) > 1 else None
-        if wanted is None or wanted in self._copied:
-            self.drawing.left_out.add("copy of what is not in the file" if wanted is None else "copy of itself")
+        target = self._by_id.get(link[1:]) if link.startswith("#") and len(link) > 1 else None
+        if target is None or target in self._copied:
+            self.drawing.left_out.add("copy of what is not in the file" if target is None else "copy of itself")
             return
         moved = np.eye(3)
         try:
             moved[:2, 2] = self._paths.length(element, "x", 0), self._paths.length(element, "y", 1)
         except STUMBLES:
             self.drawing.left_out.add("place that cannot be read")
-        self._copied.append(wanted)
-        self.read(wanted, matrix @ moved, style, depth + 1, name)
+        self._copied.append(target)
+        self.read(target, matrix @ moved, style, depth + 1, name)
         self._copied.pop()
 
     def _take(self, element: Element, matrix: NDArray[np.float64], style: Style, name: str) -> None:

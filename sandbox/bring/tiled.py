@@ -161,9 +161,9 @@ class _Map:
             self.drawing.left_out.add("tile object without a collision shape")
             return
         high = self._tiles.height_of(index, self._tile[1])
-        share = (number(each, "height") or high) / high
+        scale = (number(each, "height") or high) / high
         angle = math.radians(number(each, "rotation"))
-        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) * share
+        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) * scale
         lower = turn @ np.array([0.0, -high])
         for shape in self._tiles.shapes[index]:
             self._take_shape(shape, (x + lower[0], y + lower[1]), turn, text(each, "name"), inner=True)

@@ -35,7 +35,7 @@ def info(options: InfoOptions) -> int:
     for number, name in enumerate(options.files):
         replay = _recording(name) if is_replay(name) else None
         level = level_of(name) if replay is None else replay.level
-        run, ticks, found = _told(options, name, level, replay)
+        run, ticks, found = _events(options, name, level, replay)
         if options.json:
             print(json.dumps(_data(name, run, replay, found)))
             continue
@@ -56,7 +56,7 @@ def _recording(name: str) -> "Replay":
         raise Refused(*error.faults) from None
 
 
-def _told(
+def _events(
     options: InfoOptions, name: str, level: "Level", replay: "Replay | None"
 ) -> "tuple[Session, int, list[Event]]":
     """The run at its end, the tick of that, and what happened in it, one by one where a program asks."""
@@ -106,9 +106,9 @@ def _header(name: str, run: "Session", replay: "Replay | None", ticks: int) -> l
 def _list(options: InfoOptions, run: "Session", found: "list[Event]") -> list[str]:
     from sandbox.session.event_log import shortened
 
-    left, dropped = (found, 0) if options.all else shortened(found)
+    shown, dropped = (found, 0) if options.all else shortened(found)
     rate = run.level.settings.tick_rate
-    lines = [each.line(rate) for each in left] or ["  nothing: nobody did anything, nothing touched or broke"]
+    lines = [each.line(rate) for each in shown] or ["  nothing: nobody did anything, nothing touched or broke"]
     if dropped:
         lines.append(f"            {dropped} more lines of who touched whom; --all lists them")
     return ["happened", *lines]

@@ -22,8 +22,8 @@ def open_link(options: OpenOptions) -> int:
         raise Refused(
             f"{options.link[:60]}: is no link to a run; it has no #scene=. sandbox play opens files and levels"
         )
-    given = {name: getattr(options, name) for name in WindowOptions.__dataclass_fields__}
-    return play(PlayOptions(level=options.link, profile=False, seconds=None, **given))
+    settings = {name: getattr(options, name) for name in WindowOptions.__dataclass_fields__}
+    return play(PlayOptions(level=options.link, profile=False, seconds=None, **settings))
 
 
 COMMAND = Subcommand("open", "open the app with the run of a link", OpenOptions, open_link)

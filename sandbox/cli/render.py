@@ -65,13 +65,13 @@ def _render_page(options: RenderOptions) -> int:
             raise Refused(f"--{name}: is for pictures and films; a page has every tick, from the beginning")
     level, replay = level_or_replay(options.level)
     per_second = level.settings.tick_rate
-    wanted = FILM_SECONDS * per_second if options.seconds is None else options.seconds * per_second
+    ticks = FILM_SECONDS * per_second if options.seconds is None else options.seconds * per_second
     if replay and options.seconds is None:
-        wanted = replay.ticks
-    if replay and round(wanted) > replay.ticks:
+        ticks = replay.ticks
+    if replay and round(ticks) > replay.ticks:
         raise Refused(f"{options.level}: is {replay.ticks / per_second:g} s long")
     session = Session(level, replay.script if replay else ())
-    what = write_run(session, round(wanted), options.output, level.name, replay)
+    what = write_run(session, round(ticks), options.output, level.name, replay)
     print(f"{options.output}: {what}, {options.output.stat().st_size / 1e6:.2f} MB")
     return EXIT_OK
 

@@ -50,7 +50,7 @@ class Verified:
     """What came of a recording: the exit code, and what is told of it."""
 
     code: int
-    told: dict[str, Any]
+    report: dict[str, Any]
 
 
 def verify_files(options: ReplayOptions) -> int:
@@ -67,12 +67,12 @@ def verify_files(options: ReplayOptions) -> int:
         for name, found in zip(names, results, strict=True):
             with bar.aside():
                 if options.json:
-                    print(json.dumps(found.told))
+                    print(json.dumps(found.report))
                 elif found.code != EXIT_REFUSED:
-                    print(f"{name}: {found.told['text']}")
+                    print(f"{name}: {found.report['text']}")
                 sys.stdout.flush()
                 if not options.json:
-                    tell(found.told.get("faults", ()))
+                    tell(found.report.get("faults", ()))
             worst = max(worst, found.code)
             bar.update()
     return worst
@@ -115,7 +115,7 @@ def _verified(name: str, options: ReplayOptions, shows: bool = False) -> Verifie
         found = _compared(name, options, shows)
     except (Refused, ReplayError) as error:
         found = Verified(EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)})
-    return Verified(found.code, {**found.told, "wall_seconds": time.perf_counter() - start})
+    return Verified(found.code, {**found.report, "wall_seconds": time.perf_counter() - start})
 
 
 def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:

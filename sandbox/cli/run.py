@@ -90,10 +90,10 @@ def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], b
         raise
     except KeyboardInterrupt:
         if session.recording:
-            told = f"cut off at tick {session.tick}; `sandbox replay --partial` verifies it"
+            cause = f"cut off at tick {session.tick}; `sandbox replay --partial` verifies it"
             if fresh != path:
-                told = f"interrupted at tick {session.tick}; the older recording of that name stays"
-            tell([f"{path}: {told}"])
+                cause = f"interrupted at tick {session.tick}; the older recording of that name stays"
+            tell([f"{path}: {cause}"])
             session.abandon_recording()
         raise
     except BaseException:
@@ -121,11 +121,11 @@ def _with_overrides(level: "Level", options: RunOptions) -> "Level":
     from sandbox.session.replay.rerecord import with_settings
 
     settings = {"solver": options.solver, "substeps": options.substeps}
-    given = {name: value for name, value in settings.items() if value is not None}
-    if not given:
+    overrides = {name: value for name, value in settings.items() if value is not None}
+    if not overrides:
         return level
     try:
-        return with_settings(level, given, "command line")
+        return with_settings(level, overrides, "command line")
     except LevelError as error:
         raise Refused(*error.faults) from None
 

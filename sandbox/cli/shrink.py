@@ -164,12 +164,12 @@ def _work(shrinker: "Shrinker", options: ShrinkOptions) -> bool:
     """Make it as small as it gets; whether that was interrupted."""
     try:
         with Progress(None, " run") as bar, closing(shrinker.steps(options.processes or cores())) as steps:
-            told = None
+            reported = None
             for _ in steps:
                 bar.update()
-                if shrinker.smallest is not told:
-                    told = shrinker.smallest
-                    bar.note(told.counts())
+                if shrinker.smallest is not reported:
+                    reported = shrinker.smallest
+                    bar.note(reported.counts())
     except KeyboardInterrupt:
         return True
     return False
@@ -184,10 +184,10 @@ def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", 
     failure = shrinker.seen.failure
     write_recording(shrinker.smallest, shrinker.level, output)
     test = output.with_name(f"test_{_identifier(_stem(output.name))}.py")
-    given = options.against
-    present = None if given else _present_level(shrinker)
-    found = Path(given) if given and Path(given).exists() else present
-    place = seen_from(found, output.parent) if found else given
+    against = options.against
+    present = None if against else _present_level(shrinker)
+    found = Path(against) if against and Path(against).exists() else present
+    place = seen_from(found, output.parent) if found else against
     levels: dict[str, str | None] = {"other" if isinstance(failure, Diverges) else "own": place}
     source = Path(options.file).name
     test.write_text(test_text(shrinker.smallest, failure, source, output, levels), encoding="utf-8")

@@ -110,14 +110,14 @@ def _panels(grid: "SweepGrid", options: SweepOptions) -> list[str]:
 
     if not {"cs", "cd"} <= set(grid.columns):
         raise Refused("a map has Cs across and Cd up: give --cs and --cd, or end the name in .csv")
-    wanted = options.measure.split(",") if options.measure else grid.figures
-    for name in wanted:
+    measures = options.measure.split(",") if options.measure else grid.figures
+    for name in measures:
         if name not in grid.figures:
             raise Refused(f"--measure: there is no {name!r}; there are: {', '.join(grid.figures)}")
-    maps = panel_count(grid) * len(wanted)
+    maps = panel_count(grid) * len(measures)
     if maps > MOST_MAPS:
         raise Refused(f"{maps} maps in one picture: at most {MOST_MAPS} can be read; choose some with --measure")
-    return wanted
+    return measures
 
 
 def _known(table: Path, grid: "SweepGrid", is_beside: bool) -> "Rows | None":
@@ -186,11 +186,11 @@ def _columns(options: SweepOptions, level: "Level") -> "dict[str, tuple[Value, .
         if not sign:
             raise Refused(f"--set: {text!r}: write FIELD=A:B:N, or FIELD=a,b,..")
         columns[field_place(level, field)] = values_of("--set", value_text)
-    for name, given in (("cs", options.cs), ("cd", options.cd)):
-        if given:
-            values = values_of(f"--{name}", given)
+    for name, typed in (("cs", options.cs), ("cd", options.cd)):
+        if typed:
+            values = values_of(f"--{name}", typed)
             if not all(isinstance(value, float | int) and 0.0 <= value <= 1.0 for value in values):
-                raise Refused(f"--{name}: {given!r}: Cs and Cd lie between 0 and 1")
+                raise Refused(f"--{name}: {typed!r}: Cs and Cd lie between 0 and 1")
             columns[name] = tuple(map(float, values))
     return columns
 

@@ -51,8 +51,8 @@ class Held:
         pairs = dict.fromkeys(tuple(shown(owner_of(name)) for name in pair) for pair in self.let_go)
         if not pairs:
             return ""
-        told = "; ".join(f"{a} and {b}" for a, b in pairs)
-        return f"No longer joined: {told}. Undo joins {'them' if len(self.let_go) == 1 else 'all of them'} again."
+        names = "; ".join(f"{a} and {b}" for a, b in pairs)
+        return f"No longer joined: {names}. Undo joins {'them' if len(self.let_go) == 1 else 'all of them'} again."
 
 
 def with_joins_held(before: Level, document: Document) -> Held:
@@ -104,10 +104,10 @@ class _Holding:
             gap = (now[0] - was[0], now[1] - was[1])
             if _is_same(gap, (0.0, 0.0)) or _is_same(now, (0.0, 0.0)):
                 continue
-            given = self._give_way(a, b, gap)
-            if given:
+            moved = self._give_way(a, b, gap)
+            if moved:
                 # All that hangs on what gave way is looked at again.
-                todo += [other for other in self._before if given & {owner_of(name) for name in other}]
+                todo += [other for other in self._before if moved & {owner_of(name) for name in other}]
             else:
                 del self._before[weld]
                 self.let_go.append(weld)
@@ -159,8 +159,8 @@ class _Holding:
     def _bring(self, owner: str, by: Point) -> set[str]:
         """Move a body or loose particle with its group; the ids of what moved, none where it cannot."""
         kind: Kind = "particle" if isinstance(self._is[owner], ParticleDef) else "body"
-        wanted = with_groups(self._level, frozenset([Item(kind, owner)]))
-        ids = {str(item.key) for item in wanted if item.kind != "spring"} - self._settled
+        group = with_groups(self._level, frozenset([Item(kind, owner)]))
+        ids = {str(item.key) for item in group if item.kind != "spring"} - self._settled
         try:
             self._is |= {name: within(without_dust(shifted(self._is[name], *by))) for name in ids}
         except EditError:

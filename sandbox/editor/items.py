@@ -66,36 +66,36 @@ def _keys(_identity: int, selection: Selection) -> dict[Kind, frozenset[str | in
 
 def chosen_bodies(level: Level, selection: Selection) -> list[AnyBody]:
     """The selected bodies in file order."""
-    wanted = keys(selection, "body")
-    return [body for body in level.bodies if body.id in wanted]
+    chosen = keys(selection, "body")
+    return [body for body in level.bodies if body.id in chosen]
 
 
 def chosen_particles(level: Level, selection: Selection) -> list[ParticleDef]:
     """The selected loose particles in file order."""
-    wanted = keys(selection, "particle")
-    if len(wanted) == len(level.particles):
+    chosen = keys(selection, "particle")
+    if len(chosen) == len(level.particles):
         return list(level.particles)
-    return [particle for particle in level.particles if particle.id in wanted]
+    return [particle for particle in level.particles if particle.id in chosen]
 
 
 def chosen_springs(level: Level, selection: Selection) -> list[SpringDef]:
     """The selected loose springs in file order."""
-    wanted = keys(selection, "spring")
-    if len(wanted) == len(level.springs):
+    chosen = keys(selection, "spring")
+    if len(chosen) == len(level.springs):
         return list(level.springs)
-    return [spring for index, spring in enumerate(level.springs) if index in wanted]
+    return [spring for index, spring in enumerate(level.springs) if index in chosen]
 
 
 def chosen_terrain(level: Level, selection: Selection) -> list[TerrainDef]:
     """The selected pieces of terrain in file order."""
-    wanted = keys(selection, "terrain")
-    return [piece for piece in level.terrain if piece.id in wanted]
+    chosen = keys(selection, "terrain")
+    return [piece for piece in level.terrain if piece.id in chosen]
 
 
 def chosen_zones(level: Level, selection: Selection) -> list[ZoneDef]:
     """The selected zones in file order."""
-    wanted = keys(selection, "zone")
-    return [zone for zone in level.zones if zone.id in wanted]
+    chosen = keys(selection, "zone")
+    return [zone for zone in level.zones if zone.id in chosen]
 
 
 def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
@@ -151,11 +151,11 @@ def exchanged(
     )
 
 
-def _exchanged(old: Sequence[Any], wanted: frozenset[str | int], new: Sequence[Any]) -> tuple[Any, ...]:
+def _exchanged(old: Sequence[Any], chosen: frozenset[str | int], new: Sequence[Any]) -> tuple[Any, ...]:
     if len(new) == len(old):
         return tuple(new)
     turn = iter(new)
-    return tuple([next(turn) if part.id in wanted else part for part in old])
+    return tuple([next(turn) if part.id in chosen else part for part in old])
 
 
 def kept_springs(selection: Selection, kept: Iterable[int]) -> Selection:

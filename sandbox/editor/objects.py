@@ -24,10 +24,10 @@ class ObjectLine(NamedTuple):
     group: str | None = None
 
 
-def object_lines(level: Level, wanted: str = "") -> list[ObjectLine]:
+def object_lines(level: Level, query: str = "") -> list[ObjectLine]:
     """Everything in a level, in file order; a group stands where its first member does, and its members below it.
 
-    wanted: words, in any case, that a line has in its name, its kind, its material or its group; a group whose own line
+    query: words, in any case, that a line has in its name, its kind, its material or its group; a group whose own line
     has them stays whole.
     """
     groups: dict[str, list[ObjectLine]] = {}
@@ -41,7 +41,7 @@ def object_lines(level: Level, wanted: str = "") -> list[ObjectLine]:
             groups[line.group] = []
             order.append(line.group)
         groups[line.group].append(line)
-    words = wanted.casefold().split()
+    words = query.casefold().split()
     found: list[ObjectLine] = []
     for entry in order:
         if isinstance(entry, ObjectLine):

@@ -356,8 +356,8 @@ def _loose(level: Level) -> _Loose:
 
 def _radii(level: Level) -> Floats:
     """Radius [m] of the particles of each body (k,)."""
-    given = [body.particle_radius for body in level.bodies]
-    return np.array([BODY_RADIUS if radius is None else radius for radius in given], dtype=np.float64)
+    radii = [body.particle_radius for body in level.bodies]
+    return np.array([BODY_RADIUS if radius is None else radius for radius in radii], dtype=np.float64)
 
 
 def positions(particles: Sequence[ParticleDef]) -> Floats:
@@ -371,10 +371,10 @@ def _links(level: Level, names: _Names) -> _Links:
     index = {name: number for number, name in enumerate(materials)}
     slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
     lengths = (spring.given_length for spring in level.springs)
-    given = [np.nan if length is None else length for length in lengths]
+    rest = [np.nan if length is None else length for length in lengths]
     return _Links(
         ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
-        rest_length=np.array(given, dtype=np.float64),
+        rest_length=np.array(rest, dtype=np.float64),
         material=np.array([index[spring.material] for spring in level.springs], dtype=np.int64),
         materials=materials,
     )

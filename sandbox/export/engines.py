@@ -241,10 +241,10 @@ def engine_numbers(body: ChosenBody) -> dict[str, EngineNumbers]:
 
 def _solved(body: ChosenBody, engine: str, steps: int, own: float, difference: str) -> EngineNumbers:
     """An implicit engine, which damps as `own` times k h by itself."""
-    share = body.tick / steps / body.h
-    restoring = body.restoring * share * share
+    ratio = body.tick / steps / body.h
+    restoring = body.restoring * ratio * ratio
     # (1 + a D) a step is the fall exp(-a c h / m_r) of the wobble.
-    damping = math.expm1(body.eigenvalue * body.decay * share) / body.eigenvalue - own * restoring
+    damping = math.expm1(body.eigenvalue * body.decay * ratio) / body.eigenvalue - own * restoring
     return _engine_numbers(body, engine, steps, restoring, damping, body.rigid, difference)
 
 
@@ -252,9 +252,9 @@ def _added(body: ChosenBody, engine: str, steps: int, times: int, difference: st
     """An engine that adds springs one by one, and damps this many times a step."""
     rigid = body.rigid or steps > MOST_STEPS
     steps = 1 if rigid else steps
-    share = body.tick / steps / body.h
+    ratio = body.tick / steps / body.h
     return _engine_numbers(
-        body, engine, steps, body.restoring * share * share, body.decay * share, rigid, difference, times
+        body, engine, steps, body.restoring * ratio * ratio, body.decay * ratio, rigid, difference, times
     )
 
 

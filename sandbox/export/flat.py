@@ -292,8 +292,8 @@ def _flat_springs(world: World, level: Level) -> tuple[int, tuple[FlatSpring, ..
     count = world.grab_spring if world.grab_spring >= 0 else world.spring_count
     k, c = _constants(world, count)
     tick, reduced = 1.0 / world.settings.tick_rate, reduced_masses(world)[:count]
-    share = np.divide(k * tick * tick, reduced, out=np.zeros(count), where=reduced > 0.0)
-    steps = np.floor(np.sqrt(share * effective_count(world)[:count] / BOUND)).astype(np.int64) + 1
+    strength = np.divide(k * tick * tick, reduced, out=np.zeros(count), where=reduced > 0.0)
+    steps = np.floor(np.sqrt(strength * effective_count(world)[:count] / BOUND)).astype(np.int64) + 1
     nissen = world.law[:count] != LAW_HOOKE
     rods = nissen & ((steps > MOST_STEPS) | (world.damping[:count] > HIGHEST_COEFFICIENT))
     loose = {f":{number}": spring.extras for number, spring in enumerate(level.springs)}

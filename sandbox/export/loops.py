@@ -96,12 +96,12 @@ def largest_pair(stiffness: float, damping: float, n_eff: float) -> tuple[float,
 
     # The larger of the two first, as the other follows from it.
     if damping >= stiffness:
-        share = stiffness / damping
-        damp = floored(scale * damping, lambda c: proven(share * c, c))
-        return floored(share * damp, lambda c: proven(c, damp)), damp
-    share = damping / stiffness
-    stiff = floored(scale * stiffness, lambda c: proven(c, share * c))
-    return stiff, floored(share * stiff, lambda c: proven(stiff, c))
+        ratio = stiffness / damping
+        damp = floored(scale * damping, lambda c: proven(ratio * c, c))
+        return floored(ratio * damp, lambda c: proven(c, damp)), damp
+    ratio = damping / stiffness
+    stiff = floored(scale * stiffness, lambda c: proven(c, ratio * c))
+    return stiff, floored(ratio * stiff, lambda c: proven(stiff, c))
 
 
 def _loop_pair(body: ChosenBody, stiffness: float, damping: float, h: float) -> LoopPair:

@@ -26,9 +26,9 @@ def exact(value: float) -> str:
     return repr(float(value) + 0.0)
 
 
-def percent(share: float) -> str:
+def percent(fraction: float) -> str:
     """A share as per cent, with three digits."""
-    return f"{short(100.0 * share)} %"
+    return f"{short(100.0 * fraction)} %"
 
 
 def floored(value: float, inside: Callable[[float], bool]) -> float:

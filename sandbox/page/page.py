@@ -72,9 +72,9 @@ def _page(
     """A page of these parts, which may run them and what it makes of them, and has these sources; around: elements by
     the places of the template where they stand."""
     held_to = policy(_template("page"), parts, made, img=ICON, **sources)
-    given = {"TITLE": html.escape(title), "HINTS": hint_markup(hints), "PARTS": parts, "POLICY": held_to}
-    given["ABOUT"] = html.escape(worded(hints, "mouse"))
-    return filled("page", **{"HOME": "", "SHOWN": "", "NEXT": ""} | given | dict(around or {}))
+    fields = {"TITLE": html.escape(title), "HINTS": hint_markup(hints), "PARTS": parts, "POLICY": held_to}
+    fields["ABOUT"] = html.escape(worded(hints, "mouse"))
+    return filled("page", **{"HOME": "", "SHOWN": "", "NEXT": ""} | fields | dict(around or {}))
 
 
 def hint_markup(text: str) -> str:

@@ -51,14 +51,14 @@ def _layout_of(hint: Any) -> FieldLayout | None:
     return (kinds[0], lengths[0]) if kinds and lengths else None
 
 
-def with_empty(kind: type[Arrays], **given: Any) -> Arrays:
+def with_empty(kind: type[Arrays], **arrays: Any) -> Arrays:
     """A named tuple of arrays without items, of the kinds that its class says, but for what is given.
 
     Raises TypeError where a field is neither given, nor has an ArrayKind, nor is such a tuple.
     """
     hints = get_type_hints(kind, include_extras=True)
     made: Any = kind(
-        *(given[name] if name in given else _empty(hint, f"{kind.__name__}.{name}") for name, hint in hints.items())
+        *(arrays[name] if name in arrays else _empty(hint, f"{kind.__name__}.{name}") for name, hint in hints.items())
     )
     return made
 

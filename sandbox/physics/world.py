@@ -54,7 +54,7 @@ class World(StateArrays):
         self.topology_version, self.hand_version, self.may_fly = 0, 0, True
         self._derived: dict[Callable[[Any], Any], tuple[int, Any]] = {}
         self._lasting: dict[Callable[[Any], Any], Any] = {}
-        self._room = Capacity()
+        self._capacity = Capacity()
         for column in COLUMNS:
             setattr(self, column.name, column.empty())
         # The last good values of what is guarded; never state.
@@ -91,7 +91,7 @@ class World(StateArrays):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what was derived."""
-        return self.__dict__ | {"_derived": {}, "_lasting": {}, "_room": Capacity()}
+        return self.__dict__ | {"_derived": {}, "_lasting": {}, "_capacity": Capacity()}
 
     def derived(self, make: Callable[[Self], Derived], of_hands: bool = True) -> Derived:
         """The result of `make` for this world, kept until topology changes or an array is replaced.
@@ -148,7 +148,7 @@ class World(StateArrays):
         return self.row_names[Family.KEY]
 
     def _grow(self, family: Family, count: int, arrays: dict[str, NDArray[Any]]) -> None:
-        room, mine = self._room.appended, self.__dict__
+        room, mine = self._capacity.appended, self.__dict__
         for column in FAMILIES[family]:
             name = column.name
             grown = room(name, mine[name], count)
@@ -311,7 +311,7 @@ class World(StateArrays):
         places = arguments.floats("position", position, (count, 2))
         velocities = np.where(is_pinned[:, None], 0.0, arguments.floats("velocity", velocity, (count, 2)))
         spins = np.where(is_pinned, 0.0, arguments.floats("spin", others.get("spin", 0.0), (count,)))
-        given: dict[str, ArrayLike] = dict(
+        columns: dict[str, ArrayLike] = dict(
             position=places,
             origin=places,
             velocity=velocities,
@@ -330,7 +330,7 @@ class World(StateArrays):
             collides=collides,
             **others | {"spin": spins},
         )
-        rows = arguments.rows_of(Family.PARTICLE, count, given)
+        rows = arguments.rows_of(Family.PARTICLE, count, columns)
         self.particle_naming.append(names)
         self._grow(Family.PARTICLE, count, rows)
         return first
@@ -357,12 +357,12 @@ class World(StateArrays):
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
         rest = placed if rest_length is None else arguments.floats_or("rest_length", rest_length, placed, 0.0)
-        given: dict[str, ArrayLike] = dict(
+        columns: dict[str, ArrayLike] = dict(
             particle_a=a, particle_b=b, rest_length=rest, natural_length=rest, stiffness=stiffness, damping=damping,
             law=law, hooke_stiffness=hooke_stiffness, hooke_damping=hooke_damping, material=material,
             spring_active=True, edge=edge, belt=belt,
         )  # fmt: skip
-        rows = arguments.rows_of(Family.SPRING, count, given)
+        rows = arguments.rows_of(Family.SPRING, count, columns)
         arguments.check_materials(rows["material"], len(self.material_names))
         self.spring_naming.append(names)
         self._grow(Family.SPRING, count, rows)
@@ -391,15 +391,15 @@ class World(StateArrays):
         if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
-        wanted = arguments.floats("inflation", inflation, (count,))
-        rest, weight = rests_of(kind, places, wanted)
+        inflations = arguments.floats("inflation", inflation, (count,))
+        rest, weight = rests_of(kind, places, inflations)
         first = self.constraint_count
-        given: dict[str, ArrayLike] = dict(
+        columns: dict[str, ArrayLike] = dict(
             constraint_kind=kind, constraint_corners=size, constraint_rest=rest, constraint_stiffness=stiffness,
             constraint_first=len(self.corner_particle) + size * np.arange(count), constraint_damping=damping,
             constraint_material=material, constraint_active=True,
         )  # fmt: skip
-        rows = arguments.rows_of(Family.CONSTRAINT, count, given)
+        rows = arguments.rows_of(Family.CONSTRAINT, count, columns)
         arguments.check_materials(rows["constraint_material"], len(self.material_names))
         self._grow(Family.CONSTRAINT, count, rows)
         self.append(
@@ -448,24 +448,24 @@ class World(StateArrays):
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
-    def command(self, name: str, giver: int = PROGRAM, /, **given: Any) -> None:
+    def command(self, name: str, giver: int = PROGRAM, /, **values: Any) -> None:
         """Carry out a command of KINDS (command.py) that a hand, a rule or a program gives.
 
-        given: its fields, by name. Raises IndexError, ValueError and RefusedCommand; nothing is changed then.
+        values: its fields, by name. Raises IndexError, ValueError and RefusedCommand; nothing is changed then.
         """
         if name == "grab" and self.grab_particle < 0:
             # Nothing is left of a hold that cannot be, no slots of hands either.
-            arguments.slot("grab", given["grab"], HANDS, GRAB_COUNT)
-            arguments.active_particles(self, "particle", [given["particle"]])
-            numbers_of(name, given)
+            arguments.slot("grab", values["grab"], HANDS, GRAB_COUNT)
+            arguments.active_particles(self, "particle", [values["particle"]])
+            numbers_of(name, values)
             self.reserve_grabs()
-        given.update(
+        values.update(
             first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate,
             materials=len(self.material_names),
         )  # fmt: skip
-        given.setdefault("duration", 0)
+        values.setdefault("duration", 0)
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
-        numbers = carry_out(self.lent, giver, name, given, self)
+        numbers = carry_out(self.lent, giver, name, values, self)
         changes = KINDS[name].changes
         if changes == OF_SOLVER:
             self._multiply_contacts(numbers[-1])

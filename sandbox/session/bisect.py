@@ -113,11 +113,11 @@ def deciding_value(
 
 
 def _ends(good: Level, bad: Level, holds: Trial, first: str, second: str) -> Iterator[Tried]:
-    for level, name, wanted in ((good, first, True), (bad, second, False)):
+    for level, name, expected in ((good, first, True), (bad, second, False)):
         held = holds(level)
         yield Tried(name, held)
-        if held is not wanted:
-            raise BisectError(f"{name} {'fails' if wanted else 'holds'} already: give one that {_DOES[wanted]}")
+        if held is not expected:
+            raise BisectError(f"{name} {'fails' if expected else 'holds'} already: give one that {_DOES[expected]}")
 
 
 _DOES = {True: "holds", False: "fails"}

@@ -109,7 +109,7 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     passed = passed and (again is None or again.found is None)
     data: dict[str, Any] = {
         "file": name, "result": "passed" if passed else "failed", "level": level.name, "stability": asdict(stability),
-        "checks": [{**_told(result), "wall_seconds": wall} for result, wall in timed],
+        "checks": [{**_as_data(result), "wall_seconds": wall} for result, wall in timed],
         "wall_seconds": time.perf_counter() - start,
     }  # fmt: skip
     if goal is not None:
@@ -149,7 +149,7 @@ def _timed(level: Level) -> list[tuple[CheckResult, float]]:
     return [found[number] for number in sorted(found)]
 
 
-def _told(result: CheckResult) -> dict[str, Any]:
+def _as_data(result: CheckResult) -> dict[str, Any]:
     """A check that was run, for programs."""
     check = result.check
     return {

@@ -415,11 +415,11 @@ def grouped(events_of: Sequence[Event], rate: int) -> list[Event]:
     by_kind: dict[str, list[Event]] = {}
     for each in in_order(events_of):
         by_kind.setdefault(each.kind, []).append(each)
-    told: list[Event] = []
+    events: list[Event] = []
     for kind, those in by_kind.items():
         many = _MANY.get(kind)
-        told += those if many is None else _joined(those, gap, many)
-    return in_order(told)
+        events += those if many is None else _joined(those, gap, many)
+    return in_order(events)
 
 
 def listed(names: Iterable[str]) -> str:
@@ -441,19 +441,19 @@ def _when(event: Event) -> tuple[int, int, int]:
 
 def _joined(those: list[Event], gap: int, many: Callable[[str, list[Event]], str]) -> Iterator[Event]:
     """Those of one kind, in the order of time, joined by what most of them share a name of."""
-    left = dict.fromkeys(those)
+    remaining = dict.fromkeys(those)
     counts = Counter(name for each in those for name in dict.fromkeys(_keys(each)))
     for name, count in counts.most_common():
         if count < MANY:
             break
-        for burst in _bursts([each for each in left if name in _keys(each)], gap):
+        for burst in _bursts([each for each in remaining if name in _keys(each)], gap):
             if len(burst) >= MANY:
                 for each in burst:
-                    del left[each]
+                    del remaining[each]
                 names = (name, *dict.fromkeys(other for each in burst for other in each.names if other != name))
                 last = max(each.last for each in burst)
                 yield Event(burst[0].tick, last, burst[0].kind, names, many(name, burst))
-    yield from left
+    yield from remaining
 
 
 def _keys(event: Event) -> tuple[str, ...]:

@@ -79,10 +79,10 @@ def level_edits(before: Level, after: Level) -> list[Edit]:
 def edit_lines(before: Level, after: Level, name: str = "level") -> tuple[str, ...]:
     """The edits from one level to another, which is called so, a line each, the first ten of them."""
     edits = level_edits(before, after)
-    told = [f"{name}: {edit}" for edit in edits[:MOST_LISTED]]
+    lines = [f"{name}: {edit}" for edit in edits[:MOST_LISTED]]
     if len(edits) > MOST_LISTED:
-        told.append(f"{name}: and {len(edits) - MOST_LISTED} fields more")
-    return tuple(told)
+        lines.append(f"{name}: and {len(edits) - MOST_LISTED} fields more")
+    return tuple(lines)
 
 
 def _at(data: Any, path: Sequence[str | int]) -> Any:

@@ -79,10 +79,10 @@ class Session:
 
     def take_messages(self) -> tuple[str, ...]:
         """The messages, which are then told and forgotten."""
-        told = self.messages
+        messages = self.messages
         self.refusals.clear()
         self.events.clear()
-        return told
+        return messages
 
     @property
     def tick(self) -> int:

@@ -54,8 +54,8 @@ def name_of(config: pytest.Config, path: Path) -> str:
     return "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
 
 
-def runs_of(config: pytest.Config, test: str, runs: Iterable["Session"], told: str) -> list[str]:
-    """Keep the runs of a test in Python that failed, and a page of each; test: its id, told: why it failed."""
+def runs_of(config: pytest.Config, test: str, runs: Iterable["Session"], reason: str) -> list[str]:
+    """Keep the runs of a test in Python that failed, and a page of each; test: its id, reason: why it failed."""
     lines = []
     name = re.sub(r"[^\w.-]+", "-", test).strip("-")
     for number, run in enumerate(runs, 1):
@@ -66,7 +66,7 @@ def runs_of(config: pytest.Config, test: str, runs: Iterable["Session"], told: s
 
         def player(target: Path) -> None:
             recording = target.with_name(f"{target.name.removesuffix('.html')}.{KEPT_RUN}")
-            _page_of(recording, test, told.splitlines()).write(target)
+            _page_of(recording, test, reason.splitlines()).write(target)
 
         one = name if number == 1 else f"{name}-{number}"
         # A run cannot be had otherwise: it is kept of every failure, pages are not.
@@ -124,9 +124,9 @@ def _words(error: OSError) -> str:
 
 def folder_of(config: pytest.Config) -> Path:
     """Where they go. Raises OSError."""
-    given = config.getoption("--replay-output")
-    if given:
-        folder = config.invocation_params.dir / given
+    output = config.getoption("--replay-output")
+    if output:
+        folder = config.invocation_params.dir / output
         folder.mkdir(parents=True, exist_ok=True)
         return folder
     cache = getattr(config, "cache", None)

@@ -47,7 +47,7 @@ def level_files(config: pytest.Config) -> frozenset[Path]:
 
 def given_renames(config: pytest.Config) -> dict[str, str]:
     """The names that --replay-rename gives, old to new. Raises UsageError."""
-    pairs = [given.partition("=") for given in config.getoption("--replay-rename")]
+    pairs = [pair.partition("=") for pair in config.getoption("--replay-rename")]
     for old, sign, new in pairs:
         if not (old and sign and new):
             raise pytest.UsageError(f"--replay-rename: {old + sign + new!r}: write OLD=NEW, as rope=chain")

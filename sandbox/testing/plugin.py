@@ -139,8 +139,8 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     report = yield
     runs = item.stash.get(_RUNS, None)
     if runs and report.when == "call" and report.failed:
-        told = call.excinfo.exconly() if call.excinfo else ""
-        lines = runs_of(item.config, item.nodeid, [run.session for run in runs], told)
+        reason = call.excinfo.exconly() if call.excinfo else ""
+        lines = runs_of(item.config, item.nodeid, [run.session for run in runs], reason)
         if lines:
             report.sections.append(("Spring Sandbox", "\n".join(lines)))
     return report

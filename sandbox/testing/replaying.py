@@ -166,20 +166,20 @@ def _golden(config: pytest.Config, path: Path) -> _Golden:
 def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Comparison | None) -> Failed:
     """A failure that says what was edited, how far the runs come apart, and how to accept it."""
     path = golden.path
-    told = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
+    failure = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
     lines = [*golden.renames_told(), *(found.lines() if found else ["with these names every bit is equal"])]
     # A single edit is in the headline already.
-    told += [line for line in lines if not told[0].endswith(f": {line}")]
+    failure += [line for line in lines if not failure[0].endswith(f": {line}")]
     smaller: list[str] = []
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
-    return Failed(*told, *(pictures_of(config, found, path) if found else []), *smaller, _acceptance(config, path))
+    return Failed(*failure, *(pictures_of(config, found, path) if found else []), *smaller, _acceptance(config, path))
 
 
 def _acceptance(config: pytest.Config, path: Path) -> str:
-    folder, given = config.invocation_params.dir, config.getoption("--replay-against")
+    folder, against = config.invocation_params.dir, config.getoption("--replay-against")
     name = path.relative_to(folder) if path.is_relative_to(folder) else path
-    options = [f"--replay-against={given}"] if given else []
+    options = [f"--replay-against={against}"] if against else []
     options += [f"--replay-rename={each}" for each in config.getoption("--replay-rename")]
     return f"to accept: {shlex.join(['pytest', '--replay-update', *options, str(name)])}"
 
@@ -189,11 +189,11 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
 
     Without a word about it, its file among those of `sandbox_levels`, if there is one.
     """
-    given, set_down = config.getoption("--replay-against"), config.getini("sandbox_against")
-    if (given or set_down) == OWN:
+    against, set_down = config.getoption("--replay-against"), config.getini("sandbox_against")
+    if (against or set_down) == OWN:
         return None
-    if given:
-        place = config.invocation_params.dir / given
+    if against:
+        place = config.invocation_params.dir / against
     elif set_down:
         place = (config.inipath.parent if config.inipath else config.rootpath) / set_down
     else:

@@ -99,8 +99,8 @@ class _Obstacles:
             return False
         way, off = b - a, self._position[:, None] - a
         square = np.maximum((way * way).sum(axis=1), 1e-30)
-        share = np.clip((off * way).sum(axis=2) / square, 0.0, 1.0)
-        gap = off - share[:, :, None] * way
+        fraction = np.clip((off * way).sum(axis=2) / square, 0.0, 1.0)
+        gap = off - fraction[:, :, None] * way
         if np.any((gap * gap).sum(axis=2) < (self._radius * self._radius)[:, None]):
             return True
         return self._is_closed and any(winding_number(point, a, b) != 0 for point in self._position)

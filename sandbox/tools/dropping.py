@@ -269,8 +269,8 @@ class ThrowTool(PlacedTool):
         if dx * dx + dy * dy <= (CLICK_SHARE * event.pick_radius) ** 2 or event.seconds <= began:
             return 0.0, 0.0
         vx, vy = ((event.position[axis] - start[axis]) / (event.seconds - began) for axis in range(2))
-        share = min(1.0, FASTEST_THROW / max((vx * vx + vy * vy) ** 0.5, 1e-9))
-        return share * vx, share * vy
+        scale = min(1.0, FASTEST_THROW / max((vx * vx + vy * vy) ** 0.5, 1e-9))
+        return scale * vx, scale * vy
 
     def cancel(self) -> Response:
         """Drop nothing."""

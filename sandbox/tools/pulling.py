@@ -50,8 +50,8 @@ def rope(ends: tuple[End, End], snapshot: Snapshot) -> tuple[Command, ...]:
     length = math.dist(start, end)
     # Ends that are particles of the world are none of its own.
     steps = [k for k in range(SEGMENTS + 1) if (k > 0 or a is None) and (k < SEGMENTS or b is None)]
-    share = np.array(steps)[:, None] / SEGMENTS
-    places = np.round((1.0 - share) * np.array(start) + share * np.array(end), DECIMALS)
+    fraction = np.array(steps)[:, None] / SEGMENTS
+    places = np.round((1.0 - fraction) * np.array(start) + fraction * np.array(end), DECIMALS)
     pinned = [number for number, k in enumerate(steps) if k in (0, SEGMENTS)]
     firm = {"stiffness": FIRM, "damping": FIRM}
     body = {

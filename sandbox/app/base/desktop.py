@@ -177,14 +177,14 @@ def chosen_path(folder: Path, typed: str, suffix: str = SUFFIX) -> Path:
     return path
 
 
-def move_new(path: Path, wanted: Path) -> None:
+def move_new(path: Path, target: Path) -> None:
     """Give a file another name, never that of a file that is there. Raises OSError."""
     try:
         # A link appears only where nothing is yet: no other program's file is lost in between.
-        os.link(path, wanted)
+        os.link(path, target)
     except FileExistsError:
         raise
     except (OSError, NotImplementedError):  # a file system without links
-        path.rename(wanted)
+        path.rename(target)
     else:
         path.unlink()

@@ -38,13 +38,13 @@ EVENTS = (
 
 def controls_of(keys: Iterable[str]) -> dict[str, str]:
     """What presses each key of a level: left, right, up, down, or a button; keys beyond those have none."""
-    left = sorted(keys)
+    unpaired = sorted(keys)
     found: dict[str, str] = {}
     for pairs, ways in ((ACROSS, ("left", "right")), (UPWARDS, ("down", "up"))):
-        pair = next((pair for pair in pairs if set(pair) <= set(left)), ())
+        pair = next((pair for pair in pairs if set(pair) <= set(unpaired)), ())
         found |= dict(zip(pair, ways, strict=False))
-        left = [key for key in left if key not in pair]
-    return found | dict(zip(left, BUTTONS, strict=False))
+        unpaired = [key for key in unpaired if key not in pair]
+    return found | dict(zip(unpaired, BUTTONS, strict=False))
 
 
 class Gamepads:

@@ -38,10 +38,10 @@ def wait_for_event(longest: float) -> bool:
     """Sleep for so long [s], but no longer than until there is an event, which stays in the queue; whether one came."""
     end = time.perf_counter() + longest
     while not pygame.event.peek():
-        left = end - time.perf_counter()
-        if left <= 0.0:
+        remaining = end - time.perf_counter()
+        if remaining <= 0.0:
             return False
-        time.sleep(min(left, _NAP))
+        time.sleep(min(remaining, _NAP))
     return True
 
 

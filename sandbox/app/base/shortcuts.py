@@ -257,10 +257,10 @@ def with_keys(
     others = {other.name: other for mode in modes for other in shortcuts(mode) if other.action}
     result, losers = {**own, entry.name: keys}, []
     for name, other in others.items():
-        left = tuple(text for text in other.keys if _combination(text) not in taken)
-        if name != entry.name and left != other.keys:
-            result[name] = left
-            losers.append(replace(other, keys=left))
+        remaining = tuple(text for text in other.keys if _combination(text) not in taken)
+        if name != entry.name and remaining != other.keys:
+            result[name] = remaining
+            losers.append(replace(other, keys=remaining))
     return result, losers
 
 

@@ -254,7 +254,7 @@ class CompareScreen(PlayScreen):
         end = (left, top + height) if self._is_wide else (left + width, top)
         pygame.draw.line(surface, LINE, (left, top), end, max(2, self._ui.px(2)))
         for side, viewport, lines in zip(SIDES, (self.viewport, self.other_viewport), self.captions(), strict=True):
-            is_small = any(long < self._ui.px(room) for long, room in zip(viewport[2:], ROOM_FOR_FIGURES, strict=True))
+            is_small = any(long < self._ui.px(most) for long, most in zip(viewport[2:], ROOM_FOR_FIGURES, strict=True))
             # The line about both lies on the upper edge of the lower half.
             below = self._ui.px(BELOW_LINE) if viewport[1] != top_of_first else 0
             place = pygame.Rect(viewport[0], viewport[1] + below, viewport[2], viewport[3] - below)
@@ -270,10 +270,10 @@ class CompareScreen(PlayScreen):
         return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
 
     @property
-    def _legend_room(self) -> pygame.Rect:
+    def _legend_area(self) -> pygame.Rect:
         """The place for the legend [pixels], below the captions, which are as wide as the halves."""
-        room, above = super()._legend_room, self._ui.px(BELOW_PILL if self._is_wide else BELOW_CAPTION)
-        return pygame.Rect(room.left, room.top + above, room.width, max(room.height - above, 0))
+        area, above = super()._legend_area, self._ui.px(BELOW_PILL if self._is_wide else BELOW_CAPTION)
+        return pygame.Rect(area.left, area.top + above, area.width, max(area.height - above, 0))
 
     def _measured(self) -> list[tuple[str, Playback]]:
         if self.beside is None:
@@ -340,10 +340,10 @@ class Difference:
             active = state.spring_active & (state.rest_length > 0.0) & (state.material >= 0)
             strain = np.abs(spring_lengths(state)[active] / state.rest_length[active] - 1.0)
         most = float(strain.max(initial=0.0))
-        return f"motion {_told(motion, 'J')}   most strained {_told(100.0 * most, '%')}"
+        return f"motion {_with_unit(motion, 'J')}   most strained {_with_unit(100.0 * most, '%')}"
 
 
-def _told(value: float, unit: str) -> str:
+def _with_unit(value: float, unit: str) -> str:
     """A figure that grows and shrinks, in few letters."""
     if not np.isfinite(value) or value > 1e7:
         return "beyond measure"
@@ -357,10 +357,10 @@ def draw_chip(surface: pygame.Surface, ui: Ui, area: pygame.Rect, name: str, lin
     fonts = [ui.font(TEXT_SIZE), *[ui.font(SMALL_SIZE)] * (len(lines) - 1)]
     inset, gap = ui.px(PADDING), ui.px(10)
     most = area.width - 2 * ui.px(MARGIN)
-    room = max(most - 2 * inset - gap - title.get_width(), 1)
+    text_width = max(most - 2 * inset - gap - title.get_width(), 1)
     texts: list[pygame.Surface] = []
     for colour, font, line in zip([TEXT] + [MUTED] * len(lines), fonts, lines, strict=False):
-        for shown in [line] if font.size(line)[0] <= room else wrapped(line, font, room, 2):
+        for shown in [line] if font.size(line)[0] <= text_width else wrapped(line, font, text_width, 2):
             texts.append(font.render(shown, True, colour))
     width = min(most, title.get_width() + gap + max(text.get_width() for text in texts) + 2 * inset)
     height = sum(text.get_height() for text in texts) + 2 * ui.px(5)

@@ -232,9 +232,9 @@ class LimitGauge(Widget):
             self._shown = (value, limit, text, limit_text)
             self.repaint()
 
-    def _share(self, value: float) -> float:
-        share = math.log(max(value, self._low) / self._low) / math.log(self._high / self._low)
-        return min(max(share, 0.0), 1.0)
+    def _fraction(self, value: float) -> float:
+        fraction = math.log(max(value, self._low) / self._low) / math.log(self._high / self._low)
+        return min(max(fraction, 0.0), 1.0)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """Track, limit and knob, the words above."""
@@ -247,7 +247,7 @@ class LimitGauge(Widget):
         surface.blit(left, (0, 0))
         surface.blit(right, right.get_rect(topright=(size[0], 0)))
         start, length, middle = px(SIDE), size[0] - 2 * px(SIDE), size[1] - px(KNOB + 3)
-        end = start + self._share(limit) * length
+        end = start + self._fraction(limit) * length
         thick = px(TRACK)
         pygame.draw.rect(surface, LINE, (start, middle - thick // 2, length, thick), border_radius=max(1, thick // 2))
         if limit < self._high:
@@ -257,7 +257,7 @@ class LimitGauge(Widget):
                 pygame.draw.line(surface, DANGER, (x, beyond.bottom - 1), (min(x + thick, beyond.right), beyond.top))
         pygame.draw.line(surface, MUTED, (end, middle - px(7)), (end, middle + px(6)), max(1, px(1.5)))
         pygame.draw.line(surface, DECADE, (start, middle - px(3)), (start, middle + px(3)))
-        at = (start + self._share(value) * length, middle)
+        at = (start + self._fraction(value) * length, middle)
         pygame.draw.aacircle(surface, TEXT, at, px(KNOB))
         pygame.draw.aacircle(surface, DANGER if is_beyond else ACCENT, at, px(KNOB - 2.5))
         return surface

@@ -91,7 +91,7 @@ def own_settings(world: World, fresh: World) -> list[Command]:
     if now != fresh.settings:
         commands.append(SetSolver(now.solver, now.iterations, now.substeps, now.warm_start))
     for material in range(len(fresh.material_names)):
-        wanted = coefficients_of(world, material)
-        if wanted is not None and wanted != coefficients_of(fresh, material):
-            commands.append(SetCoefficients(*wanted, material))
+        pairs = coefficients_of(world, material)
+        if pairs is not None and pairs != coefficients_of(fresh, material):
+            commands.append(SetCoefficients(*pairs, material))
     return commands

@@ -61,10 +61,10 @@ class Backdrop:
         self._layer.set_alpha(None)
         painter.surface.blit(self._layer, camera.viewport[:2])
 
-    def veil(self, painter: Painter, camera: Camera, share: float) -> None:
+    def veil(self, painter: Painter, camera: Camera, opacity: float) -> None:
         """Lay the backdrop, with an opacity (0..1), over all that was drawn on it."""
         if self._layer is not None:
-            self._layer.set_alpha(round(255 * share))
+            self._layer.set_alpha(round(255 * opacity))
             painter.surface.blit(self._layer, camera.viewport[:2])
 
     def _make_layer(
@@ -187,7 +187,7 @@ def _fill_band(rows: slice, size: tuple[int, int], theme: Theme, picture: NDArra
     """Draw these rows of the stage, of which the first is a multiple of 4."""
     width, height = size
     y, x = np.arange(rows.start, rows.stop, dtype=np.float32)[:, None], np.arange(width, dtype=np.float32)
-    share = y / np.float32(max(height, 1))
+    fraction = y / np.float32(max(height, 1))
     away = np.sqrt(((x - width / 2) / (0.62 * width)) ** 2 + ((y - 0.46 * height) / (0.72 * height)) ** 2)
     # A lamp behind the stage, which is darker towards the corners.
     lit = np.clip(1 - 1.25 * away, 0, 1) ** 2
@@ -196,6 +196,6 @@ def _fill_band(rows: slice, size: tuple[int, int], theme: Theme, picture: NDArra
     bayer = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float32) / 16 + 0.03
     dither = np.tile(bayer, (len(y) // 4 + 1, width // 4 + 1))[: len(y), :width]
     for top, bottom, lamp in zip(*theme.stage, theme.lamp, strict=True):
-        colour = top * (1 - share) + bottom * share + lit * lamp
+        colour = top * (1 - fraction) + bottom * fraction + lit * lamp
         picture <<= 8
         picture |= np.clip(colour * dark + dither, 0, 255).astype(np.uint8)

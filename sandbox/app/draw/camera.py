@@ -93,7 +93,7 @@ class Camera:
         self.zoom = min(max(zoom, ZOOM_RANGE[0]), ZOOM_RANGE[1])
         self.centre = ((left + right) / 2, (bottom + top) / 2)
 
-    def _room(self) -> Point:
+    def _extent(self) -> Point:
         """The largest box [m] that can be shown with a margin."""
         free = 1.0 - 2.0 * FIT_MARGIN
         return self.viewport[2] * free / self.zoom, self.viewport[3] * free / self.zoom
@@ -101,7 +101,7 @@ class Camera:
     def make_room(self, box: Box) -> None:
         """Zoom out about the middle where something as large as a box [m] would not be seen whole."""
         left, bottom, right, top = box
-        wide, tall = self._room()
+        wide, tall = self._extent()
         times = min(wide / max(right - left, 1e-9), tall / max(top - bottom, 1e-9), 1.0)
         self.zoom = max(self.zoom * times, ZOOM_RANGE[0])
 
@@ -130,7 +130,7 @@ class Camera:
             return
         self.make_room(box)
         left, bottom, right, top = box
-        (wide, tall), (x, y) = self._room(), self.centre
+        (wide, tall), (x, y) = self._extent(), self.centre
         x = min(max(x, right - wide / 2), left + wide / 2)
         y = min(max(y, top - tall / 2), bottom + tall / 2)
         self.centre = (x, y)
@@ -155,8 +155,8 @@ def bounds(points: NDArray[np.float64]) -> Box:
 GRID_STEP = 64.0
 
 
-def grid_spacing(zoom: float, wanted: float) -> float:
-    """Distance [m] between grid lines, 1, 2 or 5 times a power of ten, at least `wanted` pixels apart."""
-    metres = wanted / zoom
+def grid_spacing(zoom: float, least: float) -> float:
+    """Distance [m] between grid lines, 1, 2 or 5 times a power of ten, at least `least` pixels apart."""
+    metres = least / zoom
     power = 10.0 ** math.floor(math.log10(metres))
     return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= metres * (1.0 - 1e-9))

@@ -94,9 +94,9 @@ def unpacked(colour: int) -> Colour:
     return colour >> 16 & 255, colour >> 8 & 255, colour & 255
 
 
-def mixed(first: Colour, second: Colour, share: float) -> tuple[int, int, int]:
-    """The colour that has `share` (0..1) of the second in it."""
-    r, g, b = (round(a + (z - a) * share) for a, z in zip(first, second, strict=True))
+def mixed(first: Colour, second: Colour, weight: float) -> tuple[int, int, int]:
+    """The colour that has `weight` (0..1) of the second in it."""
+    r, g, b = (round(a + (z - a) * weight) for a, z in zip(first, second, strict=True))
     return r, g, b
 
 

@@ -154,37 +154,37 @@ class Effects:
         """Draw dust, behind everything."""
         rows = self._dust.rows
         if len(rows):
-            left = 1.0 - rows[:, 4] / rows[:, 5]
-            size = np.clip(rows[:, 6] * camera.zoom * (1.6 + 1.8 * (1.0 - left)), 2.0, 48.0 * scale)
-            marks.discs(camera.project(rows[:, :2]), size, packed(theme.dust), 0.4 * left, glow=True)
+            remaining = 1.0 - rows[:, 4] / rows[:, 5]
+            size = np.clip(rows[:, 6] * camera.zoom * (1.6 + 1.8 * (1.0 - remaining)), 2.0, 48.0 * scale)
+            marks.discs(camera.project(rows[:, :2]), size, packed(theme.dust), 0.4 * remaining, glow=True)
 
     def mark_drops(self, marks: MarkList, camera: Camera, theme: Theme, scale: float) -> None:
         """Draw drops, before everything."""
         rows = self._drops.rows
         if len(rows):
-            left = 1.0 - rows[:, 4] / rows[:, 5]
+            remaining = 1.0 - rows[:, 4] / rows[:, 5]
             size = np.clip(rows[:, 6] * camera.zoom, 1.2 * scale, 5.0 * scale)
-            marks.discs(camera.project(rows[:, :2]), size, packed(theme.foam), np.minimum(1.0, 2.0 * left))
+            marks.discs(camera.project(rows[:, :2]), size, packed(theme.foam), np.minimum(1.0, 2.0 * remaining))
 
     def mark_sparks(self, marks: MarkList, camera: Camera, scale: float) -> None:
         """Draw sparks, before everything."""
         rows = self._sparks.rows
         if len(rows):
-            left = 1.0 - rows[:, 4] / rows[:, 5]
+            remaining = 1.0 - rows[:, 4] / rows[:, 5]
             at, tail = camera.project(rows[:, :2]), camera.project(rows[:, :2] - TAIL * rows[:, 2:4])
-            marks.discs(at, 9.0 * scale * left + 1.0, SPARK_GLOW, 0.55 * left, glow=True)
-            marks.strokes(np.concatenate([tail, at], axis=1), 1.2 * scale * left + 0.3, SPARK, left)
+            marks.discs(at, 9.0 * scale * remaining + 1.0, SPARK_GLOW, 0.55 * remaining, glow=True)
+            marks.strokes(np.concatenate([tail, at], axis=1), 1.2 * scale * remaining + 0.3, SPARK, remaining)
 
     def mark_breaks(self, marks: MarkList, camera: Camera, theme: Theme, scale: float) -> None:
         """Draw a cross where something broke a moment ago."""
         rows = self._crosses.rows
         if len(rows):
-            at, left, arm = camera.project(rows[:, :2]), 1.0 - rows[:, 4] / rows[:, 5], CROSS * scale
+            at, remaining, arm = camera.project(rows[:, :2]), 1.0 - rows[:, 4] / rows[:, 5], CROSS * scale
             for side in (-1.0, 1.0):
                 way = np.array([arm, side * arm])
                 ends = np.concatenate([at - way, at + way], axis=1)
                 for half, colour in ((2.4 * scale, theme.card), (1.1 * scale, theme.past)):
-                    marks.strokes(ends, half, packed(colour), np.minimum(1.0, 3.0 * left))
+                    marks.strokes(ends, half, packed(colour), np.minimum(1.0, 3.0 * remaining))
 
 
 def _is_outside(state: Snapshot) -> NDArray[np.bool_]:

@@ -164,10 +164,10 @@ class Overlays:
     def _mark_stability(self, pen: "_RimPen", springs: Slots, shares: Floats) -> None:
         frame = pen.frame
         order = springs[np.argsort(shares[springs], kind="stable")]
-        ends, share = frame.ends(_pairs(frame.state, order)), shares[order]
-        half = (0.7 + 1.3 * np.clip(share, 0.0, 1.0)) * frame.scale
-        tones = stability_tones(share, frame.theme)
-        past = share > 1.0
+        ends, ratios = frame.ends(_pairs(frame.state, order)), shares[order]
+        half = (0.7 + 1.3 * np.clip(ratios, 0.0, 1.0)) * frame.scale
+        tones = stability_tones(ratios, frame.theme)
+        past = ratios > 1.0
         pen.strokes(ends[~past], half[~past], tones[~past])
         pen.marks.strokes(ends[past], half[past] + HALO * frame.scale, packed(frame.theme.card))
         for k in range(0, DASHES, 2):
@@ -242,12 +242,12 @@ def part_of(ends: Floats, first: float, last: float) -> Floats:
     return np.concatenate([ends[:, :2] + first * way, ends[:, :2] + last * way], axis=1)
 
 
-def stability_tones(share: Floats, theme: Theme) -> NDArray[np.int64]:
+def stability_tones(ratios: Floats, theme: Theme) -> NDArray[np.int64]:
     """Colours (m,) of shares of what is proven stable: from grey to that of what is stretched, and one for beyond 1."""
     rest, near = theme.strain[1], theme.strain[2]
-    place = np.clip(np.nan_to_num(share, nan=9.0), 0.0, 1.0)
+    place = np.clip(np.nan_to_num(ratios, nan=9.0), 0.0, 1.0)
     red, green, blue = (np.interp(place, (0.0, 1.0), (rest[k], near[k])).astype(np.int64) for k in range(3))
-    return np.where(share > 1.0, packed(theme.past), red << 16 | green << 8 | blue)
+    return np.where(ratios > 1.0, packed(theme.past), red << 16 | green << 8 | blue)
 
 
 # Sizes [pixels at scale 1]: half width of a dash and of what surrounds it, length of a dash and of the gap behind it.

@@ -120,14 +120,14 @@ def forget_old_pictures(folder: Path) -> None:
 
 def stale_pictures() -> tuple[dict[Path, tuple[Path, ThemeName]], list[Path]]:
     """Pictures of shipped levels that are missing, each with its level and theme; and pictures of nothing."""
-    wanted: dict[Path, tuple[Path, ThemeName]] = {
+    needed: dict[Path, tuple[Path, ThemeName]] = {
         shipped_picture(level, picture_key(level.read_bytes()), name): (level, name)
         for level in shipped_levels()
         for name in THEME_NAMES
     }
     there = set((shipped_folder("assets") / "pictures").glob("*.*"))
-    missing = {path: of for path, of in wanted.items() if path not in there}
-    return missing, sorted(there - set(wanted))
+    missing = {path: of for path, of in needed.items() if path not in there}
+    return missing, sorted(there - set(needed))
 
 
 def draw_shipped_pictures() -> None:

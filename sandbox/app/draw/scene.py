@@ -180,8 +180,8 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
         loops = [loop for piece in actor.filling(there).pieces for loop in piece.loops]
         made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
         if len(triangles):
-            place, room = actor.spot(spot_of)
-            made["spot"] = [round(float(value), DIGITS) for value in (*place, room)]
+            place, face_radius = actor.spot(spot_of)
+            made["spot"] = [round(float(value), DIGITS) for value in (*place, face_radius)]
             made["face"] = look.face and look.skin in SOFT_SKINS
     elif actor.body.type == "ring":
         made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()

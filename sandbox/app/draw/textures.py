@@ -140,9 +140,9 @@ def _bar(base: int, gleam: float = 0.35, **light: float) -> Packed:
 
 def _twist(light: int, dark: int, slope: float, count: int) -> Packed:
     wave = 0.5 + 0.5 * np.cos(2 * np.pi * (_U * count + _V * slope))
-    share = np.clip((wave - 0.22) * 2.2, 0, 1)[..., None]
+    weight = np.clip((wave - 0.22) * 2.2, 0, 1)[..., None]
     low = np.array(unpacked(dark), dtype=np.float64)
-    colour = low + (np.array(unpacked(light)) - low) * share
+    colour = low + (np.array(unpacked(light)) - low) * weight
     rounded = 1 - 0.62 * np.clip(_V + 0.25, 0, 1) ** 1.2 - 0.35 * np.clip((np.abs(_V) - 0.7) / 0.3, 0, 1)
     return _packed(colour * (rounded + 0.22 * np.exp(-(((_V + 0.4) / 0.25) ** 2)))[..., None], _FULL)
 
@@ -181,9 +181,9 @@ def _deck() -> Packed:
 def _turf(theme: Theme) -> Packed:
     top = -0.45 + 0.38 * np.abs(np.sin(5 * np.pi * _U)) + 0.16 * np.sin(6 * np.pi * _U + 0.7)
     low = 0.52 + 0.20 * np.sin(4 * np.pi * _U + 0.5) + 0.10 * np.sin(10 * np.pi * _U)
-    share = np.clip(0.5 - _V * 0.5, 0, 1)[..., None] * np.ones((1, ALONG, 1))
+    weight = np.clip(0.5 - _V * 0.5, 0, 1)[..., None] * np.ones((1, ALONG, 1))
     dark = np.array(theme.turf[1], dtype=np.float64)
-    colour = dark + (np.array(theme.turf[0]) - dark) * share
+    colour = dark + (np.array(theme.turf[0]) - dark) * weight
     return _packed(colour, 255.0 * np.clip((_V - top) * 4, 0, 1) * np.clip((low - _V) * 6, 0, 1))
 
 

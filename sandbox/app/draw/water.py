@@ -182,9 +182,9 @@ def _fill_deep(surface: pygame.Surface, tones: Tones, depth: float, zoom: float)
 
 def _at_depth(tones: Tones, depth: Floats) -> tuple[Floats, Floats]:
     """Colour (..., 3) and opacity (...) of water at depths [m] (...)."""
-    share = np.clip(depth / DEEP, 0.0, 1.0)
+    fraction = np.clip(depth / DEEP, 0.0, 1.0)
     near, deep = np.array(tones[0], float), np.array(tones[1], float)
-    return near + (deep - near) * share[..., None], CLEAR + (MURKY - CLEAR) * share
+    return near + (deep - near) * fraction[..., None], CLEAR + (MURKY - CLEAR) * fraction
 
 
 def _profile(tones: Tones, scale: float, zoom: float, above: int, rows: int) -> NDArray[np.uint32]:

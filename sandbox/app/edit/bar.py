@@ -97,10 +97,10 @@ class Bar:
         width = ui.units[0]
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
         gaps = GROUP_GAP * len(LEFT) if width >= ROOM_FOR_NAME else 4.0 * len(LEFT)
-        room = width - 2 * MARGIN - gaps
+        available = width - 2 * MARGIN - gaps
         count = sum(map(len, LEFT)) + len(RIGHT) + 1
-        self.left_out = LEAVING[: max(0, count - int(room // LEAST_PITCH))]
-        pitch = min(BUTTON + GAP, room / (count - len(self.left_out)))
+        self.left_out = LEAVING[: max(0, count - int(available // LEAST_PITCH))]
+        pitch = min(BUTTON + GAP, available / (count - len(self.left_out)))
         size = min(BUTTON, pitch - 2)
         self.buttons: dict[str, Button] = {}
         x, y = MARGIN, (BAR_HEIGHT - size) / 2

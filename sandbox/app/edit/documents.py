@@ -247,11 +247,11 @@ class DocumentActions:
         def answer(typed: str) -> str | None:
             if not typed.strip("./\\ ") or len(typed) > NAME_LIMIT or "\0" in typed:
                 return f"Type a name of 1 to {NAME_LIMIT} characters."
-            wanted = folder / os.path.expanduser(typed)
-            if typed.endswith(("/", os.sep)) or os.path.isdir(wanted):
+            target = folder / os.path.expanduser(typed)
+            if typed.endswith(("/", os.sep)) or os.path.isdir(target):
                 return "This is a folder. Add a file name."
-            if wanted.parent != folder and not os.path.isdir(wanted.parent):
-                return f"There is no folder {one_line(str(wanted.parent))}."
+            if target.parent != folder and not os.path.isdir(target.parent):
+                return f"There is no folder {one_line(str(target.parent))}."
             return None
 
         def write(typed: str) -> None:

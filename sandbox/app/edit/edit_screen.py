@@ -340,8 +340,8 @@ class EditScreen:
 
     def _fit_to(self, *boxes: Box | None) -> None:
         """Show boxes [m], or a first view where there are none."""
-        given = [box for box in boxes if box is not None] or [FIRST_VIEW]
-        self.camera.fit(union(*given))
+        known = [box for box in boxes if box is not None] or [FIRST_VIEW]
+        self.camera.fit(union(*known))
 
     @property
     def scales_unevenly(self) -> bool:

@@ -107,10 +107,10 @@ class Guide:
         if self.tour is not None:
             self.tour.follow(situation)
         place = self._card_place(self._spot(situation))
-        wanted = (*place, self._offers, self.tour and (self.tour.index, self.tour.stays))
-        if wanted != self._made_for:
+        key = (*place, self._offers, self.tour and (self.tour.index, self.tour.stays))
+        if key != self._made_for:
             self._take_away()
-            self._made_for, self._card = wanted, place
+            self._made_for, self._card = key, place
             self._make(self._app.ui, place)
 
     def _make(self, ui: Ui, place: pygame.Rect) -> None:

@@ -246,13 +246,13 @@ class _PairSheet:
         return self._surface
 
 
-def _tags_within(words: Sequence[str], room: int, scale: float) -> list[pygame.Surface]:
+def _tags_within(words: Sequence[str], width: int, scale: float) -> list[pygame.Surface]:
     """Tags in letters of one size, none wider than this many pixels; the end of what is too long is left out."""
     for part in SMALLER:
         tags = [name_tag(text, scale * part) for text in words]
-        if all(tag.get_width() <= room for tag in tags):
+        if all(tag.get_width() <= width for tag in tags):
             break
-    return [tag.subsurface((0, 0, min(tag.get_width(), room), tag.get_height())) for tag in tags]
+    return [tag.subsurface((0, 0, min(tag.get_width(), width), tag.get_height())) for tag in tags]
 
 
 def corner_tag(name: str, size: Size) -> tuple[pygame.Surface, tuple[int, int]]:

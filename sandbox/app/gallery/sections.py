@@ -83,9 +83,9 @@ FIRST = "jelly_pile"
 
 def in_sections(paths: Iterable[Path]) -> list[tuple[GallerySection, list[Path]]]:
     """Shipped level files by the sections that name them, in their order; those that none names come last."""
-    left = {path.stem: path for path in paths}
-    result = [(section, [left.pop(name) for name in section.levels if name in left]) for section in SECTIONS]
-    return [(section, found) for section, found in [*result, (OTHERS, list(left.values()))] if found]
+    remaining = {path.stem: path for path in paths}
+    result = [(section, [remaining.pop(name) for name in section.levels if name in remaining]) for section in SECTIONS]
+    return [(section, found) for section, found in [*result, (OTHERS, list(remaining.values()))] if found]
 
 
 def is_found(query: str, *texts: str) -> bool:
@@ -96,6 +96,6 @@ def is_found(query: str, *texts: str) -> bool:
 
 def search_rank(query: str, name: str) -> int:
     """How well a name fits a query, 0 best: it is the query, begins with it, has all of its words, or none of these."""
-    wanted, found = " ".join(query.casefold().split()), name.casefold()
-    fits = found == wanted, found.startswith(wanted), all(word in found for word in wanted.split())
+    query_words, found = " ".join(query.casefold().split()), name.casefold()
+    fits = found == query_words, found.startswith(query_words), all(word in found for word in query_words.split())
     return fits.index(True) if True in fits else len(fits)

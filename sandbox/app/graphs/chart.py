@@ -152,8 +152,8 @@ class Chart:
         for line in lines:
             good = np.flatnonzero(np.isfinite(line.values))
             value = float(line.values[good[-1]]) if len(good) else heights[0]
-            share = min(max((value - heights[0]) / (heights[1] - heights[0]), 0.0), 1.0)
-            ends.append((inside.bottom - 1 - share * (inside.height - 1), line))
+            fraction = min(max((value - heights[0]) / (heights[1] - heights[0]), 0.0), 1.0)
+            ends.append((inside.bottom - 1 - fraction * (inside.height - 1), line))
         ends.sort(key=lambda end: end[0])
         tops = _apart([y - tall / 2 for y, _ in ends], tall, self._place.top, inside.bottom)
         x = inside.right + self._px(5)
@@ -161,8 +161,8 @@ class Chart:
             middle = top + tall / 2
             self._draw_sample(line, x, middle)
             text = self._bold.render(line.name, True, line.colour)
-            room = max(1, self._place.right - x - self._px(SAMPLE + 5))
-            self._surface.blit(text, (x + self._px(SAMPLE + 4), round(top)), (0, 0, room, text.get_height()))
+            width = max(1, self._place.right - x - self._px(SAMPLE + 5))
+            self._surface.blit(text, (x + self._px(SAMPLE + 4), round(top)), (0, 0, width, text.get_height()))
 
     def _draw_sample(self, line: GraphLine, x: float, y: float) -> None:
         """A piece of a line as it is drawn."""
@@ -234,10 +234,10 @@ def _range(lines: Sequence[GraphLine], from_zero: bool) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = float(values.min()), float(values.max())
     low = min(low, 0.0) if from_zero else low
-    room = 0.06 * (high - low)
-    if room <= 1e-9 * max(abs(low), abs(high)):
-        room = max(0.05 * abs(high), 1e-9)
-    return (low if from_zero and low == 0.0 else low - room), high + room
+    margin = 0.06 * (high - low)
+    if margin <= 1e-9 * max(abs(low), abs(high)):
+        margin = max(0.05 * abs(high), 1e-9)
+    return (low if from_zero and low == 0.0 else low - margin), high + margin
 
 
 def _thinned(x: Floats, y: Floats, good: NDArray[np.bool_], most: int) -> tuple[Floats, Floats, NDArray[np.bool_]]:

@@ -45,8 +45,8 @@ def level_with_contacts(playback: Playback, contacts: ContactSettings) -> Level:
     """
     world = playback.session.world
     level = level_at_rate(playback.level, world, world.settings.tick_rate, in_pace=False)
-    given = ContactsDef(friction=contacts.friction, restitution=contacts.restitution)
-    return replaced(level, contacts=given if contacts.is_on else None)
+    changed = ContactsDef(friction=contacts.friction, restitution=contacts.restitution)
+    return replaced(level, contacts=changed if contacts.is_on else None)
 
 
 def restart_with_contacts(app: Application, playback: Playback, contacts: ContactSettings, of_document: bool) -> None:

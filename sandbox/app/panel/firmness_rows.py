@@ -214,15 +214,15 @@ class FirmnessRows(SoftnessReading):
                 self._set_one(subject, asked(subject), gesture)
         return True
 
-    def _set_one(self, subject: MeasuredBody, wanted: Firmness, gesture: int) -> None:
+    def _set_one(self, subject: MeasuredBody, target: Firmness, gesture: int) -> None:
         settings = self.playback.session.world.settings
         reach = FirmnessRange.of(subject.body.shape, settings.gravity, settings.tick_rate)
         try:
-            given = reach.nearest(wanted)
+            nearest = reach.nearest(target)
         except OutOfReach as error:
             self._say(f"{subject.name}: {error}.")
             return
-        if given != wanted:
-            self._say(f"{subject.name}: {wanted} is not possible here. It has the nearest value now: {given}.")
+        if nearest != target:
+            self._say(f"{subject.name}: {target} is not possible here. It has the nearest value now: {nearest}.")
         assert subject.slot is not None
-        self.playback.submit(SetFirmness(subject.slot, **asdict(given)), gesture)
+        self.playback.submit(SetFirmness(subject.slot, **asdict(nearest)), gesture)

@@ -253,8 +253,8 @@ class Panel(PropertyOwner):
             return
         self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
-        told = self.firmness.curve_of(self.material)
-        key = (settings, self.material, self.firmness.body, told, *(array.tobytes() for array in inputs))
+        curve = self.firmness.curve_of(self.material)
+        key = (settings, self.material, self.firmness.body, curve, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)

@@ -54,9 +54,9 @@ def seconds(value: float) -> str:
     return f"{number(value / 60.0, 2)} min" if value >= 100.0 else f"{number(value, 2)} s"
 
 
-def per_cent(share: float, digits: int = 2) -> str:
+def per_cent(fraction: float, digits: int = 2) -> str:
     """A share as a person says it."""
-    return f"{number(100.0 * share, digits)} %" if abs(share) >= UNSEEN else "0 %"
+    return f"{number(100.0 * fraction, digits)} %" if abs(fraction) >= UNSEEN else "0 %"
 
 
 def motion_words(motion: SpringMotion) -> str:

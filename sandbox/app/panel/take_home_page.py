@@ -134,9 +134,9 @@ class _TakeHomePage:
             button = self._button(place, text, do, style)
             if number == 0:
                 ui.focus_on(button)
-        room = ui.rect(MARGIN, TOP, self._width - 2 * MARGIN, self._height - TOP - ROW - 32)
-        room.width = self._wide + ui.px(BAR_WIDTH)
-        area = ScrollArea(ui, room, self._box)
+        box = ui.rect(MARGIN, TOP, self._width - 2 * MARGIN, self._height - TOP - ROW - 32)
+        box.width = self._wide + ui.px(BAR_WIDTH)
+        area = ScrollArea(ui, box, self._box)
         high = self._content_height()
         tall = text_height(self._about, ui.font(TEXT_SIZE), self._wide)
         if self._code:

@@ -187,9 +187,9 @@ class PartCard(Widget):
         self._target.drop(at)
 
 
-def card_places(ui: Ui, count: int, columns: int, room: float, y: float, gap: float) -> tuple[list[pygame.Rect], float]:
+def card_places(ui: Ui, count: int, columns: int, wide: float, y: float, gap: float) -> tuple[list[pygame.Rect], float]:
     """Where this many cards lie [pixels] in a room so wide, from y on, and where they end [layout units]."""
-    width = (room - 6 - gap * (columns - 1)) / columns
+    width = (wide - 6 - gap * (columns - 1)) / columns
     height = width * PICTURE_RATIO + NAME_HEIGHT
     cells = (divmod(index, columns) for index in range(count))
     places = [ui.rect(3 + across * (width + gap), y + row * (height + gap), width, height) for row, across in cells]

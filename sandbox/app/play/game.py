@@ -181,7 +181,7 @@ class Game:
 
     def _open_card(self, ending: Ending) -> None:
         self._ending = ending
-        self.card = ResultCard(self._ui, ending, self._choices(ending), self._room, self._since)
+        self.card = ResultCard(self._ui, ending, self._choices(ending), self._area, self._since)
 
     def _choices(self, ending: Ending) -> list[Choice]:
         """The buttons of a card: at first what most people want next."""
@@ -292,7 +292,7 @@ class Game:
         self._goal_fades = self._goal_left != before
 
     @property
-    def _room(self) -> pygame.Rect:
+    def _area(self) -> pygame.Rect:
         return pygame.Rect(self._stage().camera.viewport)
 
     @property
@@ -310,7 +310,7 @@ class Game:
         playback = self._playback
         chips = chips_of(playback.level, playback.current, self.result)
         goal = playback.level.goal if self.card is None else ""
-        self.score.draw(surface, self._ui, chips, goal, self._goal_left / FADING, self._room)
+        self.score.draw(surface, self._ui, chips, goal, self._goal_left / FADING, self._area)
 
 
 def _restart_key() -> str:

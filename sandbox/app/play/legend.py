@@ -76,33 +76,33 @@ class Legend:
         self._card: pygame.Surface | None = None
 
     def draw(
-        self, surface: pygame.Surface, ui: Ui, overlays: Overlays, theme: Theme, solver: str, room: pygame.Rect
+        self, surface: pygame.Surface, ui: Ui, overlays: Overlays, theme: Theme, solver: str, area: pygame.Rect
     ) -> None:
-        """Draw it in the upper right corner of a room [pixels], if anything is shown."""
+        """Draw it in the upper right corner of an area [pixels], if anything is shown."""
         rows = rows_of(overlays, solver)
-        room = room.inflate(-2 * ui.px(MARGIN), -2 * ui.px(MARGIN))
-        if not rows or room.width < ui.px(SAMPLE) or room.height < ui.px(ROW):
+        area = area.inflate(-2 * ui.px(MARGIN), -2 * ui.px(MARGIN))
+        if not rows or area.width < ui.px(SAMPLE) or area.height < ui.px(ROW):
             return
-        key = (tuple(text for text, _ in rows), theme.name, ui.scale, room.size)
+        key = (tuple(text for text, _ in rows), theme.name, ui.scale, area.size)
         if key != self._key or self._card is None:
-            self._key, self._card = key, _fitted(ui.scale, rows, theme, room.size)
-        surface.blit(self._card, self._card.get_rect(topright=room.topright))
+            self._key, self._card = key, _fitted(ui.scale, rows, theme, area.size)
+        surface.blit(self._card, self._card.get_rect(topright=area.topright))
 
 
-def _fitted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, room: tuple[int, int]) -> pygame.Surface:
-    """The card, smaller where it would take much of a room [pixels].
+def _fitted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, area: tuple[int, int]) -> pygame.Surface:
+    """The card, smaller where it would take much of an area [pixels].
 
     Words that have no room on a line there wrap; rows that have none are left out, and counted.
     """
     card = _painted(scale, rows, theme)
-    share = min(part * most / is_ for part, most, is_ in zip(SHARE, room, card.get_size(), strict=True))
-    if share < 1.0:
-        scale *= max(share, SMALLEST)
-        card = _painted(scale, rows, theme, room[0])
-    left = len(rows)
-    while card.get_height() > room[1] and left > 0:
-        left -= 1
-        card = _painted(scale, [*rows[:left], (f"and {len(rows) - left} more", _nothing)], theme, room[0])
+    shrink = min(part * most / is_ for part, most, is_ in zip(SHARE, area, card.get_size(), strict=True))
+    if shrink < 1.0:
+        scale *= max(shrink, SMALLEST)
+        card = _painted(scale, rows, theme, area[0])
+    kept = len(rows)
+    while card.get_height() > area[1] and kept > 0:
+        kept -= 1
+        card = _painted(scale, [*rows[:kept], (f"and {len(rows) - kept} more", _nothing)], theme, area[0])
     return card
 
 
@@ -110,12 +110,12 @@ def _painted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, most: int
     """The card with all rows, at most so wide [pixels]."""
     font, line, gap = plain_font(round(TEXT_SIZE * scale), False), round(ROW * scale), round(4.0 * scale)
     inset, sample, step = round(PADDING * scale), round(SAMPLE * scale), line_height(font)
-    room = max(most - sample - 3 * inset, 1)
+    widest = max(most - sample - 3 * inset, 1)
     texts = [
-        [font.render(each, True, theme.text) for each in wrapped(text, font, room, MOST_LINES)] for text, _ in rows
+        [font.render(each, True, theme.text) for each in wrapped(text, font, widest, MOST_LINES)] for text, _ in rows
     ]
     highs = [line + (len(lines) - 1) * step for lines in texts]
-    wide = min(max(text.get_width() for lines in texts for text in lines), room) + sample + 3 * inset
+    wide = min(max(text.get_width() for lines in texts for text in lines), widest) + sample + 3 * inset
     size = wide, sum(highs) + 2 * inset - gap
     card = pygame.Surface(size, 0, 32)
     card.fill(theme.card)

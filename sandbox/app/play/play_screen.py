@@ -397,8 +397,8 @@ class PlayScreen:
         """Begin the run again from its beginning."""
         self._app.end_messages(self)
         self._stop()
-        left = self._app.scenes.set_aside(self.playback, self.source)
-        self.earlier.begin_again(self.playback, left if self.can_cancel else None)
+        earlier = self._app.scenes.set_aside(self.playback, self.source)
+        self.earlier.begin_again(self.playback, earlier if self.can_cancel else None)
         self.saved = None
         self._begin_again()
         self._follow_run()
@@ -555,12 +555,12 @@ class PlayScreen:
         draw_hint(surface, self._ui, self.camera, self.stage.tool)
         self.game.draw(surface)
         renderer, solver = self.stage.renderer, self.playback.current.settings.solver
-        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, self._legend_room)
+        self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, self._legend_area)
         surface.set_clip(None)
         self.graphs.draw(surface)
 
     @property
-    def _legend_room(self) -> pygame.Rect:
+    def _legend_area(self) -> pygame.Rect:
         """Where the legend has room [pixels]."""
         return pygame.Rect(self.viewport)
 

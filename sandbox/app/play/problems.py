@@ -107,13 +107,13 @@ class Problems:
     def _tell(self) -> None:
         """Say what broke, and what was stopped; a line that has grown takes the place of what it was."""
         playback = self._stage().playback
-        told = [playback.breaks.text, playback.stopped.text(playback.session.tick)]
-        for text, before in zip(told, self._last_said, strict=True):
+        lines = [playback.breaks.text, playback.stopped.text(playback.session.tick)]
+        for text, before in zip(lines, self._last_said, strict=True):
             if text != before:
                 self._app.take_back(before)
                 if text:
                     self._say(text)
-        self._last_said = told
+        self._last_said = lines
 
     @property
     def _details(self) -> list[str]:
@@ -270,9 +270,9 @@ def put_back(playback: Playback, box: Box, pictures: list[Box]) -> int:
     left, bottom, right, top = box
     for number, body in enumerate(bodies):
         # Side by side near the top, at rest.
-        wanted = left + (right - left) * (number + 1) / (len(bodies) + 1), top - FROM_TOP * (top - bottom)
+        target = left + (right - left) * (number + 1) / (len(bodies) + 1), top - FROM_TOP * (top - bottom)
         x, y = world.position[body].mean(axis=0).tolist()
-        playback.submit(MoveBody(int(body[0]), (wanted[0] - x, wanted[1] - y), at_rest=True), gesture)
+        playback.submit(MoveBody(int(body[0]), (target[0] - x, target[1] - y), at_rest=True), gesture)
     if world.has_contacts:
         # Where another body or the ground is, they are put beside it.
         for body in bodies:

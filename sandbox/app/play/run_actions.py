@@ -37,11 +37,11 @@ class EarlierRuns:
         # The run that was left by going back, and the revision of the one gone back to.
         self._after: tuple[Playback, int] | None = None
 
-    def begin_again(self, playback: Playback, left: RunScene | None) -> None:
+    def begin_again(self, playback: Playback, earlier: RunScene | None) -> None:
         """Another run takes the place of one that was left as it stood, None where nothing was done in it."""
         self._after = None
-        if left is not None:
-            self.before = left
+        if earlier is not None:
+            self.before = earlier
             self._say(BEGUN_AGAIN)
 
     def can_undo(self, playback: Playback) -> bool:

@@ -76,8 +76,8 @@ def _clock(level: Level, tick: int) -> Chip:
     seconds, limit = tick / level.settings.tick_rate, time_limit(level)
     if limit is None:
         return Chip("clock", value=time_text(seconds, 1))
-    left = max(limit - seconds, 0.0)
-    return Chip("clock", value=time_text(left, 1), colour=WARNING if left <= SHORT_TIME else TEXT)
+    remaining = max(limit - seconds, 0.0)
+    return Chip("clock", value=time_text(remaining, 1), colour=WARNING if remaining <= SHORT_TIME else TEXT)
 
 
 # Sizes in layout units: of the chips and of what is in them, and of the line of the goal.
@@ -99,10 +99,10 @@ class ScoreView:
         self._kept: RecentPictures[tuple[object, ...]] = RecentPictures(HELD)
 
     def draw(
-        self, surface: pygame.Surface, ui: Ui, chips: list[Chip], goal: str, share: float, room: pygame.Rect
+        self, surface: pygame.Surface, ui: Ui, chips: list[Chip], goal: str, opacity: float, area: pygame.Rect
     ) -> None:
-        """Draw chips at the middle of the top of a room [pixels], and below them the goal as strongly as share 0..1."""
-        y, middle, width = room.top + ui.px(TOP), room.centerx, max(room.width - 2 * ui.px(TOP), 1)
+        """Draw chips at the middle of the top of an area [pixels], and below them the goal at that opacity 0..1."""
+        y, middle, width = area.top + ui.px(TOP), area.centerx, max(area.width - 2 * ui.px(TOP), 1)
         self.place = pygame.Rect(middle, y, 0, 0)
         for row in self._rows(ui, chips, width):
             x = middle - (sum(each.width for each in row) + ui.px(GAP) * (len(row) - 1)) // 2
@@ -110,9 +110,9 @@ class ScoreView:
                 self.place.union_ip(surface.blit(picture, (x, y)))
                 x += picture.width + ui.px(GAP)
             y += ui.px(CHIP + ROW_GAP)
-        if goal and share > 0.0:
+        if goal and opacity > 0.0:
             picture = self._picture(ui, ("goal", goal, width), lambda: _painted_goal(ui, goal, width))
-            picture.set_alpha(round(255 * min(share, 1.0)))
+            picture.set_alpha(round(255 * min(opacity, 1.0)))
             surface.blit(picture, picture.get_rect(midtop=(middle, y)))
 
     def _rows(self, ui: Ui, chips: list[Chip], width: int) -> list[list[pygame.Surface]]:
@@ -173,8 +173,8 @@ def _painted_chip(ui: Ui, chip: Chip, most: int) -> pygame.Surface:
 def _painted_goal(ui: Ui, goal: str, most: int) -> pygame.Surface:
     """The goal on a plate that is at most so wide [pixels]."""
     font, inset = ui.font(GOAL_SIZE, True), ui.px(PADDING)
-    room = min(ui.px(GOAL_WIDTH), most) - 2 * inset
-    lines = [font.render(line, True, TEXT) for line in wrapped(goal, font, max(room, 1), GOAL_LINES)]
+    width = min(ui.px(GOAL_WIDTH), most) - 2 * inset
+    lines = [font.render(line, True, TEXT) for line in wrapped(goal, font, max(width, 1), GOAL_LINES)]
     step, middle = line_height(font), max(line.width for line in lines) // 2 + inset
     height = step * len(lines) + 2 * ui.px(GOAL_INSET)
     plate = _plate(ui, 2 * middle, height)
@@ -187,7 +187,7 @@ def _painted_goal(ui: Ui, goal: str, most: int) -> pygame.Surface:
 _CARD_WIDTH, _CARD_MARGIN, _BUTTON, _BUTTON_GAP, _AROUND = 410.0, 22.0, 36.0, 8.0, 8.0
 _EMBLEM, _EMBLEM_ICON, _LARGE_STAR = 64.0, 34.0, 46.0
 _WORDS_SIZE, _WORDS_LINES, _TIME_SIZE, _CARD_GAP = 19.0, 4, 14.0, 12.0
-# How far up a card stands: the part of the room that is above it.
+# How far up a card stands: the part of the area that is above it.
 ABOVE = 0.36
 # The first star comes so long after the card [s], each other one so long after the one before, and grows for so long
 # from this part of its size.
@@ -228,23 +228,23 @@ class Ending:
 
 
 class ResultCard:
-    """The card in a room [pixels]; choices: labels of buttons and what they do, the main one first.
+    """The card in an area [pixels]; choices: labels of buttons and what they do, the main one first.
 
     since: how long the card has been open [s], as it was before the window was laid out again.
     """
 
     def __init__(
-        self, ui: Ui, ending: Ending, choices: Sequence[Choice], room: pygame.Rect,
+        self, ui: Ui, ending: Ending, choices: Sequence[Choice], area: pygame.Rect,
         since: float,
     ) -> None:  # fmt: skip
         self.ending, self.since = ending, since
         self._do = choices[0][1]
         inset = ui.px(_CARD_MARGIN)
-        width = min(ui.px(_CARD_WIDTH), room.width - 2 * ui.px(_AROUND))
+        width = min(ui.px(_CARD_WIDTH), area.width - 2 * ui.px(_AROUND))
         tall = _height_of(ui, ending, width - 2 * inset)
         height = tall + ui.px(_BUTTON) + ui.px(_CARD_GAP) + 2 * inset
-        left = room.centerx - width // 2
-        top = room.top + max(round((room.height - height) * ABOVE), ui.px(_AROUND))
+        left = area.centerx - width // 2
+        top = area.top + max(round((area.height - height) * ABOVE), ui.px(_AROUND))
         self.panel = ui.panel(pygame.Rect(left, top, width, height), style="dialog")
         self.face = _Face(ui, pygame.Rect(inset, inset, width - 2 * inset, tall), ending, self.panel)
         wide = (width - 2 * inset - ui.px(_BUTTON_GAP) * (len(choices) - 1)) // len(choices)

@@ -429,6 +429,6 @@ class Following:
         if not len(middle):
             return
         x, y = middle.mean(axis=0).tolist()
-        share = 1.0 - math.exp(-frame_time / LAG)
+        gain = 1.0 - math.exp(-frame_time / LAG)
         across, up = camera.centre
-        camera.centre = across + share * (x - across), up + share * (y - up)
+        camera.centre = across + gain * (x - across), up + gain * (y - up)

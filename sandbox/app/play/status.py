@@ -192,8 +192,8 @@ def motor_parts(readings: list[MotorReading]) -> list[tuple[str, Colour]]:
     """Parts of the status line with the torque that motors give."""
     if len(readings) > NAMED_MOTORS:
         full = sum(reading.at_limit for reading in readings)
-        told = f"{full} at their limit" if full else "none at its limit"
-        return [(f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
+        limited = f"{full} at their limit" if full else "none at its limit"
+        return [(f"{len(readings)} motors, {limited}", WARNING if full else MUTED)]
     parts: list[tuple[str, Colour]] = []
     for reading in readings:
         if reading.pushes:
@@ -265,13 +265,13 @@ class RunProgress:
             self._last = 0.0
             raise Interrupted
         self._drawn, self._is_seen = now, True
-        display, share = self._app.display, done / max(total, 1)
+        display, fraction = self._app.display, done / max(total, 1)
         if can_cancel:
             self._button = draw_work(
-                display.surface, self._app.ui, share, _PLAYING_AGAIN, self._pixel(pygame.mouse.get_pos())
+                display.surface, self._app.ui, fraction, _PLAYING_AGAIN, self._pixel(pygame.mouse.get_pos())
             )
         else:
-            draw_bar(display.surface, self._app.ui, share, _PLAYING_AGAIN)
+            draw_bar(display.surface, self._app.ui, fraction, _PLAYING_AGAIN)
         display.flip()
 
     def _is_cancelled(self) -> bool:
@@ -295,9 +295,9 @@ class RunProgress:
             pygame.event.clear(_BEGUN)
 
 
-def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer: Pixel) -> pygame.Rect:
+def draw_work(surface: pygame.Surface, ui: Ui, fraction: float, text: str, pointer: Pixel) -> pygame.Rect:
     """A bar that a button cancels; where that is. pointer: where the mouse is [pixels]."""
-    card = draw_bar(surface, ui, share, text, 142)
+    card = draw_bar(surface, ui, fraction, text, 142)
     middle = card.bottom - ui.px(40)
     hint = ui.font(12).render("Escape cancels.", True, MUTED)
     surface.blit(hint, hint.get_rect(midleft=(card.left + ui.px(28), middle)))
@@ -310,12 +310,12 @@ def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer:
     return button
 
 
-def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str, height: float = 96) -> pygame.Rect:
+def draw_bar(surface: pygame.Surface, ui: Ui, fraction: float, text: str, height: float = 96) -> pygame.Rect:
     """A card in the middle of the window with a bar that is filled to a share (0..1); where the card is."""
     card = _card(surface, ui, text, 28, height)
     bar = pygame.Rect(card.left + ui.px(28), card.top + ui.px(58), card.width - ui.px(56), ui.px(6))
     pygame.draw.rect(surface, LINE, bar, border_radius=ui.px(3))
-    bar.width = round(bar.width * min(max(share, 0.0), 1.0))
+    bar.width = round(bar.width * min(max(fraction, 0.0), 1.0))
     pygame.draw.rect(surface, ACCENT, bar, border_radius=ui.px(3))
     return card
 

@@ -200,11 +200,11 @@ class TimeBar:
             )
             return
         rate = playback.session.world.settings.tick_rate
-        choices = [(_told(branch, rate), partial(playback.return_to, branch)) for branch in reversed(branches)]
+        choices = [(_branch_text(branch, rate), partial(playback.return_to, branch)) for branch in reversed(branches)]
         choose(self._app.ui, "Earlier versions of this run", "", choices)
 
 
-def _told(branch: Branch, rate: float) -> str:
+def _branch_text(branch: Branch, rate: float) -> str:
     gestures = len({entry.gesture for entry in branch.history if entry.tick >= branch.tick})
     done = {0: "nothing changed by hand", 1: "1 change by hand"}.get(gestures, f"{gestures} changes by hand")
     return f"From {branch.tick / rate:.1f} s to {branch.last_tick / rate:.1f} s: {done}"
@@ -325,8 +325,8 @@ class TimeTrack(Widget):
 
     def _tick_at(self, at: Pixel) -> int:
         margin = self.ui.px(MARGIN)
-        share = (at[0] - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
-        return round(min(max(share, 0.0), 1.0) * self.length)
+        fraction = (at[0] - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
+        return round(min(max(fraction, 0.0), 1.0) * self.length)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The rail, the part of it that was reached, the range, the marks and the knob."""

@@ -103,10 +103,10 @@ def fitting(actions: Sequence[str], width: float, is_wide: bool = False) -> list
 
     is_wide: with words on them and wider gaps between the groups.
     """
-    left, shown = width - BUTTON - GAP, list(actions)
+    available, shown = width - BUTTON - GAP, list(actions)
     for action in LEAVING:
         needed = sum(_width(each, is_wide) + GAP for each in shown) + (WIDE_GAP if is_wide else NARROW_GAP) * len(LEFT)
-        if needed <= (width if len(shown) == len(actions) else left):
+        if needed <= (width if len(shown) == len(actions) else available):
             break
         if action in shown:
             shown.remove(action)
@@ -131,10 +131,10 @@ class Toolbar:
         width = ui.units[0]
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
         self._pictures = dict(entry for group in (*LEFT, RIGHT) for entry in group)
-        wanted = [action for action in self._pictures if action not in without]
+        offered = [action for action in self._pictures if action not in without]
         is_wide = self._is_wide = width >= ROOM_FOR_NAME
-        shown = fitting(wanted, width - 2 * MARGIN, is_wide)
-        self.left_out = [action for action in wanted if action not in shown]
+        shown = fitting(offered, width - 2 * MARGIN, is_wide)
+        self.left_out = [action for action in offered if action not in shown]
         self.buttons: dict[str, Any] = {}
         self._x = MARGIN
         for group in LEFT:
@@ -147,9 +147,9 @@ class Toolbar:
         at_end = [*at_right, *(["more"] if self.left_out else [])]
         self._x = width - MARGIN + GAP - sum(_width(action, is_wide) + GAP for action in at_end)
         self.title: BarTitle | None = None
-        room = self._x - title_left - 14
-        if is_wide and room >= LEAST_NAME:
-            self.title = BarTitle(ui, ui.rect(title_left, 0, room, BAR_HEIGHT), self.back)
+        name_width = self._x - title_left - 14
+        if is_wide and name_width >= LEAST_NAME:
+            self.title = BarTitle(ui, ui.rect(title_left, 0, name_width, BAR_HEIGHT), self.back)
         for action in at_right:
             self._add(action)
         if self.left_out:
@@ -267,7 +267,7 @@ class PartsPalette:
         self._ui, self._press = ui, press
         names = [*NAMES, CATALOGUE]
         rows, most = (
-            max(1, int((room - 2 * _TOP_EDGE - 2 * _EDGE + _PALETTE_GAP) // _LEAST_STEP)) for room in (height, width)
+            max(1, int((side - 2 * _TOP_EDGE - 2 * _EDGE + _PALETTE_GAP) // _LEAST_STEP)) for side in (height, width)
         )
         shown = names if len(names) <= rows * most else [*names[: max(rows * most - 1, 0)], _MORE]
         self.left_out = [name for name in names if name not in shown]

@@ -19,7 +19,7 @@ class SceneKeeping:
     def __init__(self) -> None:
         self.shelf = SceneShelf()
         self.before: RunScene | None = None
-        self._told_fault: str | None = None
+        self._reported_fault: str | None = None
         self._saved: RunScene | None = None
         self._kept: tuple[Playback | None, int, int] = (None, 0, 0)
         self._seconds = 0.0
@@ -69,9 +69,9 @@ class SceneKeeping:
 
     def fault(self) -> str | None:
         """A line, once, where runs cannot be kept."""
-        fault, told = self.shelf.fault, self._told_fault
-        self._told_fault = fault
-        return fault if fault != told else None
+        fault, reported = self.shelf.fault, self._reported_fault
+        self._reported_fault = fault
+        return fault if fault != reported else None
 
 
 # Wall time [s] of a frame in which a run is recorded again.

@@ -62,13 +62,13 @@ class Travel:
         session = self._session
         commands = [Mark(entry.tick, "command", self._deed(entry)) for entry in session.gestures]
         breaks = []
-        told = list(tick_events_of(session, session.last_tick))
-        for tick, those in itertools.groupby((each for each in told if each.kind == "break"), lambda each: each.tick):
+        events = list(tick_events_of(session, session.last_tick))
+        for tick, those in itertools.groupby((each for each in events if each.kind == "break"), lambda each: each.tick):
             broken = list(those)
             things = listed(each.names[0] for each in broken)
             text = broken[0].text if len(broken) == 1 else f"{len(broken)} springs of {things} broke"
             breaks.append(Mark(tick, "break", text))
-        goals = [Mark(each.tick, "goal", each.text) for each in told if each.kind in ("win", "lose", "checkpoint")]
+        goals = [Mark(each.tick, "goal", each.text) for each in events if each.kind in ("win", "lose", "checkpoint")]
         bookmarks = [Mark(tick, "bookmark", "bookmark") for tick in self.bookmarks]
         branches = [Mark(branch.tick, "branch", "the run was changed there") for branch in session.branches]
         return sorted([*commands, *breaks, *goals, *bookmarks, *branches], key=lambda mark: mark.tick)
@@ -76,8 +76,8 @@ class Travel:
     def _deed(self, entry: LogEntry) -> str:
         """What a command did, in words."""
         if entry.order not in self._deeds:
-            told = next(user_actions(script_of([entry], self._session.world)), None)
-            self._deeds[entry.order] = entry.command.type.replace("_", " ") if told is None else told.text
+            action = next(user_actions(script_of([entry], self._session.world)), None)
+            self._deeds[entry.order] = entry.command.type.replace("_", " ") if action is None else action.text
         return self._deeds[entry.order]
 
     def mark_beside(self, tick: int, by: int) -> Mark | None:

@@ -87,11 +87,11 @@ SETTINGS: tuple[Setting, ...] = (
 class Chosen:
     """What a person has chosen, by the names of SETTINGS; changed(name) is called after each change.
 
-    given: values that hold for this start alone, whatever is remembered. automatic: what an amount comes to while it is
-    left open. faults: lines about what could not be read.
+    overrides: values that hold for this start alone, whatever is remembered. automatic: what an amount comes to while
+    it is left open. faults: lines about what could not be read.
     """
 
-    def __init__(self, changed: Callable[[str], object] = lambda name: None, **given: Any) -> None:
+    def __init__(self, changed: Callable[[str], object] = lambda name: None, **overrides: Any) -> None:
         self.changed = changed
         self.automatic: dict[str, float] = {}
         self.faults: list[str] = []
@@ -100,7 +100,7 @@ class Chosen:
             self.faults.append(f"Your settings cannot be read, so the defaults apply. The file is kept as {aside}.")
         read = preferences()
         self._values = {setting.name: self._taken(setting, read) for setting in SETTINGS}
-        self._values |= {name: value for name, value in given.items() if value is not None}
+        self._values |= {name: value for name, value in overrides.items() if value is not None}
         self.keys = self._taken_keys(read.get("keys", {}))
 
     def __getitem__(self, name: str) -> Any:

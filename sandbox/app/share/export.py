@@ -175,7 +175,7 @@ class MovieWriter:
         import imageio_ffmpeg
 
         self._path = path
-        self._told = tempfile.TemporaryFile()  # noqa: SIM115
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
         taken = ["-f", "rawvideo", "-pix_fmt", "bgra", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
         heard = ["-an"] if sound is None else ["-c:a", "aac", "-b:a", "160k"]
         taken += [] if sound is None else ["-i", str(sound)]
@@ -183,7 +183,7 @@ class MovieWriter:
         command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *taken, *made]
         self._ffmpeg = subprocess.Popen(
             [*command, "-movflags", "+faststart", "-f", "mp4", str(path)], stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL, stderr=self._told, start_new_session=True, creationflags=_NO_WINDOW,
+            stdout=subprocess.DEVNULL, stderr=self._errors, start_new_session=True, creationflags=_NO_WINDOW,
         )  # fmt: skip
 
     def add(self, surface: pygame.Surface) -> None:
@@ -207,19 +207,19 @@ class MovieWriter:
             return False
         if self._ffmpeg.returncode != 0:
             raise self._refusal()
-        self._told.close()
+        self._errors.close()
         return True
 
     def give_up(self) -> None:
         """Write no more."""
         self._ffmpeg.kill()
         self._ffmpeg.wait()
-        self._told.close()
+        self._errors.close()
 
     def _refusal(self) -> OSError:
         """What ffmpeg says, in a line: the first thing that it complains of."""
-        self._told.seek(0)
-        lines = self._told.read().decode(errors="replace").splitlines()
+        self._errors.seek(0)
+        lines = self._errors.read().decode(errors="replace").splitlines()
         # Before the words stands which of its parts says them.
         said = [text for line in lines if (text := re.sub(r"^\[[^]]*\] ", "", line).strip())]
         # And before what the system refuses stands what ffmpeg was about.

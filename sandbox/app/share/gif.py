@@ -48,7 +48,7 @@ class GifWriter:
     ) -> None:
         self._file, self._fps = file, fps
         width, height = size
-        self._share = MOST_BYTES * width * height * max(1.0, count / fps / MOST_SECONDS) / count
+        self._budget = MOST_BYTES * width * height * max(1.0, count / fps / MOST_SECONDS) / count
         self._written, self._tolerance = 0, 0.0
         palette = _palette([_pixels(sample) for sample in samples])
         self._colours = palette.astype(np.float32) * WEIGHTS
@@ -85,7 +85,7 @@ class GifWriter:
             self._waiting = data, self._count
             self._written += len(data)
         self._count += 1
-        step = TOLERANCE_STEP if self._written > self._share * self._count else -TOLERANCE_STEP
+        step = TOLERANCE_STEP if self._written > self._budget * self._count else -TOLERANCE_STEP
         self._tolerance = min(max(self._tolerance + step, 0.0), MOST_TOLERANCE) if self._count > FIRST else 0.0
 
     def close(self) -> None:

@@ -114,16 +114,16 @@ class ShareForm:
             self._refresh()
         self.preview.show_picture(sharing.shown_picture())
         if self.step == "work":
-            self.bar.show_share(sharing.done)
+            self.bar.show_fraction(sharing.done)
 
     # Building.
 
     def _build_preview(self) -> None:
         ui = self._ui
-        room = self._width - 2 * MARGIN - GAP
-        wide = room * PREVIEW_PART
+        available = self._width - 2 * MARGIN - GAP
+        wide = available * PREVIEW_PART
         tall = min(wide * SHAPE, self._height - TOP - SLIDER - CAPTION - BUTTON - MARGIN - 14)
-        self._right, self._side = MARGIN + wide + GAP, room - wide
+        self._right, self._side = MARGIN + wide + GAP, available - wide
         # Of the shape of what is kept, also where a low window leaves it less height.
         self.preview = FilmPreview(ui, ui.rect(MARGIN, TOP, tall / SHAPE, tall), self._box)
         self._below = TOP + tall
@@ -303,12 +303,12 @@ class ProgressBar(Widget):
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
         super().__init__(ui, rect, container)
-        self.share = 0.0
+        self.fraction = 0.0
 
-    def show_share(self, share: float) -> None:
+    def show_fraction(self, fraction: float) -> None:
         """Show how much."""
-        if share != self.share:
-            self.share = share
+        if fraction != self.fraction:
+            self.fraction = fraction
             self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
@@ -316,7 +316,7 @@ class ProgressBar(Widget):
         surface = pygame.Surface(size, pygame.SRCALPHA)
         round_by = size[1] // 2
         pygame.draw.rect(surface, LINE, surface.get_rect(), border_radius=round_by)
-        filled = pygame.Rect(0, 0, max(size[1], round(size[0] * min(self.share, 1.0))), size[1])
+        filled = pygame.Rect(0, 0, max(size[1], round(size[0] * min(self.fraction, 1.0))), size[1])
         pygame.draw.rect(surface, ACCENT, filled, border_radius=round_by)
         return surface
 

@@ -162,8 +162,8 @@ def _around(level: Level, state: Snapshot) -> Box:
     """What moves at first [m], with room above and below it for where it goes, as far as the level is shown at all."""
     left, low, right, high = particles_of(state)
     _, bottom, _, top = view_of(level, state)
-    room = ROOM * (high - low)
-    return left, max(low - room, bottom), right, min(high + room, top)
+    margin = ROOM * (high - low)
+    return left, max(low - margin, bottom), right, min(high + margin, top)
 
 
 def _numbers(box: Box) -> str:

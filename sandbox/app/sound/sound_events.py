@@ -280,8 +280,8 @@ class SoundEvents:
             with np.errstate(all="ignore"):
                 turning = np.abs(np.mean((arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / np.sum(arm * arm, axis=1)))
                 load = abs(world.actuator_impulse[motors.part[k]]) / substep_time(world.settings) / motors.torque[k]
-                share = min(turning / (abs(motors.speed[k]) or 1.0), 1.0)
-                effort = (0.2 + 0.8 * share) * (0.6 + 0.4 * min(load, 1.0))
+                fraction = min(turning / (abs(motors.speed[k]) or 1.0), 1.0)
+                effort = (0.2 + 0.8 * fraction) * (0.6 + 0.4 * min(load, 1.0))
             if np.isfinite(turning) and np.isfinite(effort) and np.isfinite(world.position[hub]).all():
                 x, y = world.position[hub].tolist()
                 pitch = MOTOR_PITCH + MOTOR_RISE * float(turning)
@@ -382,12 +382,12 @@ def timbres_of(world: LevelWorld) -> Timbres:
     body = body.reshape(-1)
     count = len(owners)
     mass = np.bincount(body, world.mass, count).astype(np.float64)
-    share = np.bincount(body, minlength=count)
+    counts = np.bincount(body, minlength=count)
     spread = np.zeros(count)
     for axis in range(2):
-        mean = np.bincount(body, world.origin[:, axis], count) / share
-        spread += np.bincount(body, (world.origin[:, axis] - mean[body]) ** 2, count) / share
-    size = 2.0 * np.sqrt(spread) + 2.0 * np.bincount(body, world.radius, count) / share
+        mean = np.bincount(body, world.origin[:, axis], count) / counts
+        spread += np.bincount(body, (world.origin[:, axis] - mean[body]) ** 2, count) / counts
+    size = 2.0 * np.sqrt(spread) + 2.0 * np.bincount(body, world.radius, count) / counts
     first = body[np.minimum(world.particle_a, len(body) - 1)]
     held = np.bincount(first, minlength=count)
     stiffness = np.where(
@@ -407,7 +407,7 @@ def timbres_of(world: LevelWorld) -> Timbres:
     strand = np.array([is_strand for _, is_strand in found], dtype=np.bool_)
     squeaks = np.array([kind in SQUEAKING for kind in stuff], dtype=np.bool_)
     strings = np.flatnonzero(strand[first] & (world.material >= 0))
-    balls = np.flatnonzero((share[body] == 1) & (world.owner >= 0))
+    balls = np.flatnonzero((counts[body] == 1) & (world.owner >= 0))
     return Timbres(body, owners.astype(np.int64), mass, size, pitch, weight, strand, squeaks, strings, balls, stuff)
 
 

@@ -99,16 +99,16 @@ class Voices:
 
     # One frame.
 
-    def play(self, wanted: Sequence[Cue], now: float) -> int:
+    def play(self, cues: Sequence[Cue], now: float) -> int:
         """Begin what is wanted in a frame, the loudest first; now [s]. How many sounds began."""
         self._sweep(now)
-        began, share = 0, self.volume
-        for each in sorted(wanted, key=lambda one: -one.loudness * level_of(one.note.kind)):
+        began, volume = 0, self.volume
+        for each in sorted(cues, key=lambda one: -one.loudness * level_of(one.note.kind)):
             if began == NEW_PER_FRAME:
                 break
             if self._is_too_soon(each, now):
                 continue
-            gain = min(share * each.loudness * level_of(each.note.kind), self._room(now))
+            gain = min(volume * each.loudness * level_of(each.note.kind), self._headroom(now))
             if gain < SOFTEST_VOICE:
                 continue
             channel = self._free_channel(now)
@@ -119,13 +119,13 @@ class Voices:
             self._voices.append(_Voice(channel, sample, gain, now, each.note))
             self._last[each.source, each.note.kind] = self._last[each.note] = now
             began += 1
-            share *= FOLLOWING
+            volume *= FOLLOWING
         self._make_room(now)
         return began
 
-    def hum(self, wanted: Sequence[Cue], now: float) -> None:
+    def hum(self, cues: Sequence[Cue], now: float) -> None:
         """Let the motors that are wanted run, the loudest first, and no others."""
-        loudest = {each.source: each for each in sorted(wanted, key=lambda one: -one.loudness)[:MOTORS]}
+        loudest = {each.source: each for each in sorted(cues, key=lambda one: -one.loudness)[:MOTORS]}
         for source in [source for source in self._hums if source not in loudest]:
             self._let_go(self._hums.pop(source), now)
         for source, each in loudest.items():
@@ -136,13 +136,13 @@ class Voices:
             goal = self.volume * each.loudness * level_of("motor")
             if hum is None:
                 channel = self._free_channel(now)
-                gain = min(goal, self._room(now))
+                gain = min(goal, self._headroom(now))
                 if channel is not None and gain >= SOFTEST_VOICE:
                     self._output.play(channel, each.note, self._bank[each.note], ears(gain, each.pan), loop=True)
                     self._hums[source] = _Hum(channel, each.note, gain, each.pan, now)
             elif abs(goal - hum.gain) > 0.002 or abs(each.pan - hum.pan) > 0.02:
                 # In small steps, which are not heard as such.
-                hum.gain += max(min(goal - hum.gain, 0.02, max(self._room(now), 0.0)), -0.02)
+                hum.gain += max(min(goal - hum.gain, 0.02, max(self._headroom(now), 0.0)), -0.02)
                 hum.pan += max(min(each.pan - hum.pan, 0.1), -0.1)
                 self._output.set_gains(hum.channel, ears(hum.gain, hum.pan))
 
@@ -165,7 +165,7 @@ class Voices:
 
     # Room.
 
-    def _room(self, now: float) -> float:
+    def _headroom(self, now: float) -> float:
         return 1.0 - self.total(now)
 
     def _is_too_soon(self, each: Cue, now: float) -> bool:

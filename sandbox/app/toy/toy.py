@@ -77,8 +77,8 @@ class Toy:
         self.stage = Stage(self.playback, (0, 0, width, height), self.window.scale)
         # The edge of the window is the edge of what is seen: no margin but this.
         left, bottom, right, top = self.stage.first_box
-        room = 2.0 * MARGIN * self.window.scale
-        self.camera.zoom = min((width - room) / max(right - left, 1e-9), (height - room) / max(top - bottom, 1e-9))
+        rims = 2.0 * MARGIN * self.window.scale
+        self.camera.zoom = min((width - rims) / max(right - left, 1e-9), (height - rims) / max(top - bottom, 1e-9))
 
     @property
     def camera(self) -> Any:
@@ -310,8 +310,8 @@ class Toy:
 
     def _draw_words(self, words: str) -> None:
         surface, scale = self.window.surface, self.window.scale
-        room = surface.get_width() - round(24 * scale)
-        picture = plain_font(round(12 * scale), False).render(words, True, MUTED, None, room)
+        width = surface.get_width() - round(24 * scale)
+        picture = plain_font(round(12 * scale), False).render(words, True, MUTED, None, width)
         place = picture.get_rect(midtop=(surface.get_width() // 2, round(10 * scale)))
         surface.blit(picture, place)
 
@@ -351,8 +351,8 @@ class FrameMotion:
         dx, dy = (place[0] - before[0]) / zoom, (before[1] - place[1]) / zoom
         x, y = self.behind[0] + dx, self.behind[1] + dy
         far = math.hypot(x, y)
-        share = 1.0 if far <= FARTHEST else FARTHEST / far
-        self.behind = (x * share, y * share)
+        scale = 1.0 if far <= FARTHEST else FARTHEST / far
+        self.behind = (x * scale, y * scale)
         return place != before
 
     def forget(self, place: tuple[int, int]) -> None:

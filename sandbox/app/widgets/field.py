@@ -306,8 +306,8 @@ class Field(Widget):
 
     def _place_at(self, x: int) -> int:
         """The place between letters that is nearest to a column of the window [pixels]."""
-        wanted = x - self.rect.left - self.ui.px(PADDING) + self._scrolled
-        return min(range(len(self.typed) + 1), key=lambda at: abs(self._x_of(at) - wanted))
+        target = x - self.rect.left - self.ui.px(PADDING) + self._scrolled
+        return min(range(len(self.typed) + 1), key=lambda at: abs(self._x_of(at) - target))
 
     def pass_time(self, seconds: float) -> None:
         """Let the caret blink."""

@@ -60,31 +60,31 @@ class Face(NamedTuple):
     """A font and by how much what it draws is scaled."""
 
     font: pygame.font.Font
-    share: float
+    scale: float
 
     @property
     def ascent(self) -> int:
         """Height above the base line [pixels]."""
-        return round(self.share * pygame.font.Font.get_ascent(self.font))
+        return round(self.scale * pygame.font.Font.get_ascent(self.font))
 
     def render(self, text: str, antialias: bool, colour: Any) -> pygame.Surface:
         """The picture of a text that the font has."""
         picture = pygame.font.Font.render(self.font, text, antialias, colour)
-        if self.share == 1.0:
+        if self.scale == 1.0:
             return picture
         return pygame.transform.smoothscale(picture, self.size(text))
 
     def size(self, text: str) -> tuple[int, int]:
         """Width and height of such a text [pixels]."""
         width, height = pygame.font.Font.size(self.font, text)
-        return round(self.share * width), round(self.share * height)
+        return round(self.scale * width), round(self.scale * height)
 
     def metrics(self, text: str) -> list[Any]:
         """Extents of each letter."""
         found = pygame.font.Font.metrics(self.font, text)
-        if self.share == 1.0:
+        if self.scale == 1.0:
             return found
-        return [each and tuple(round(self.share * part) for part in each) for each in found]
+        return [each and tuple(round(self.scale * part) for part in each) for each in found]
 
 
 class SafeFont(pygame.font.Font):
@@ -104,7 +104,7 @@ class SafeFont(pygame.font.Font):
             if self._has_all(text):
                 return super().render(text, *arguments, **named)
             pieces = self._pieces(text)
-            if len(pieces) == 1 and pieces[0][1].share == 1.0:
+            if len(pieces) == 1 and pieces[0][1].scale == 1.0:
                 return pygame.font.Font.render(pieces[0][1].font, pieces[0][0], *arguments, **named)
             return _side_by_side(pieces, *arguments[:2])
         except pygame.error:  # nothing but characters without a width

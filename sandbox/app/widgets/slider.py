@@ -282,8 +282,8 @@ class Dial(Draggable):
         """Set the value under the mouse, or a marked one near it."""
         x, y = ((at[0] - self.rect.centerx) / self._radius, (self.rect.centery - at[1]) / self._radius)
         x, y = (0.0 if abs(along) < NEAR else along for along in (x, y))
-        share = min(math.hypot(x, y), 1.0)
-        strength = next((mark for mark in self._marks if abs(mark / self._full - share) < NEAR), share * self._full)
+        pull = min(math.hypot(x, y), 1.0)
+        strength = next((mark for mark in self._marks if abs(mark / self._full - pull) < NEAR), pull * self._full)
         length = math.hypot(x, y)
         self._set((x / length * strength, y / length * strength) if length else (0.0, 0.0))
 
@@ -305,8 +305,8 @@ class Dial(Draggable):
             step = self._full * (_FINE_DIAL_STEP if event.mod & pygame.KMOD_SHIFT else _DIAL_STEP)
             x, y = (along + way * step for along, way in zip(self.value, ways[event.key], strict=True))
             # It goes no further than the rim, unless it is there already.
-            share = min(1.0, max(self._full, math.hypot(*self.value)) / max(math.hypot(x, y), 1e-12))
-            self._set((x * share, y * share))
+            scale = min(1.0, max(self._full, math.hypot(*self.value)) / max(math.hypot(x, y), 1e-12))
+            self._set((x * scale, y * scale))
         else:
             return False
         self._done()

@@ -215,8 +215,8 @@ class Ui(WindowLayout):
             self._top = len(self._seen)
             self._lay_out_in(sheet.panel, self.root.rect)
 
-    def _lay_out_in(self, widget: Widget, room: pygame.Rect) -> None:
-        widget.seen = widget.rect.clip(room)
+    def _lay_out_in(self, widget: Widget, clip: pygame.Rect) -> None:
+        widget.seen = widget.rect.clip(clip)
         if widget.is_shown and widget.seen.width and widget.seen.height:
             self._seen.append(widget)
             for child in widget.children:
@@ -441,11 +441,11 @@ class Ui(WindowLayout):
 
     def _draw_ring(self, surface: pygame.Surface, focus: Widget) -> None:
         # What is scrolled out of its area has no ring either.
-        clip, holder, room = surface.get_rect(), focus.parent, self.px(5)
+        clip, holder, margin = surface.get_rect(), focus.parent, self.px(5)
         while holder is not None and holder is not self.root:
-            clip, holder = clip.clip(holder.rect.inflate(room, room)), holder.parent
+            clip, holder = clip.clip(holder.rect.inflate(margin, margin)), holder.parent
         surface.set_clip(clip)
-        pygame.draw.rect(surface, ACCENT, focus.rect.inflate(room, room), max(1, self.px(2)), self.px(8))
+        pygame.draw.rect(surface, ACCENT, focus.rect.inflate(margin, margin), max(1, self.px(2)), self.px(8))
         surface.set_clip(None)
 
 
@@ -484,8 +484,8 @@ class Tip:
     def _painted(self, text: str) -> pygame.Surface:
         ui, font = self._ui, self._ui.font(TEXT_SIZE)
         across, down, high = ui.px(ACROSS), ui.px(DOWN), line_height(font)
-        room = min(ui.px(WIDEST), ui.size[0]) - 2 * across
-        lines = [line for part in text.split("\n") for line in wrapped(part, font, room, MOST_LINES)]
+        width = min(ui.px(WIDEST), ui.size[0]) - 2 * across
+        lines = [line for part in text.split("\n") for line in wrapped(part, font, width, MOST_LINES)]
         wide = max(font.size(line)[0] for line in lines)
         size = wide + 2 * across, high * len(lines) + 2 * down
         picture = box(size, TIP, ui.px(CORNER), max(ui.px(1), 1)).copy()

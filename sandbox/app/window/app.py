@@ -441,19 +441,19 @@ def run_app(
     request: StartRequest,
     profile: Profile,
     seconds: float | None,
-    given: Mapping[str, Any],
+    overrides: Mapping[str, Any],
     show_progress: Callable[[], object] = lambda: None,
     says_states: bool = False,
 ) -> None:
     """Show what is requested in the window and run until it is closed, or for this many seconds.
 
-    given: see `Chosen`. show_progress: called now and then until there is something to show. says_states: the window's
-    title says what happens.
+    overrides: see `Chosen`. show_progress: called now and then until there is something to show. says_states: the
+    window's title says what happens.
     """
     # What is imported stays: whoever looks for garbage passes it over, which takes a tenth of a second less.
     gc.freeze()
     display.settle()
-    app = App(display, profile, Chosen(**given))
+    app = App(display, profile, Chosen(**overrides))
     app.says_states = says_states
     show_progress()
     app.guide.may_offer = True

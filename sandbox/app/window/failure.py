@@ -44,8 +44,8 @@ class FrameGuard:
             # What the frame was at may be half done.
             self._app.rebuild()
         except Exception as again:
-            told = f"The program cannot go on, and closes. Your work is kept.{self._write_down(again)}"
-            raise SystemExit(told) from again
+            message = f"The program cannot go on, and closes. Your work is kept.{self._write_down(again)}"
+            raise SystemExit(message) from again
         text = (
             f"Something in the program failed ({one_line(f'{type(error).__name__}: {error}')[:120]}). "
             f"Your work is kept.{where}"

@@ -209,9 +209,9 @@ class FileActions:
 
     def _name_scene(self, path: Path, scene: RunScene) -> None:
         def rename(typed: str) -> str | None:
-            wanted, fault = self._renamed(path, typed, SCENE, _in_my_levels)
-            if wanted is not None and self.app.play is not None:
-                self.app.play.saved = wanted, scene
+            target, fault = self._renamed(path, typed, SCENE, _in_my_levels)
+            if target is not None and self.app.play is not None:
+                self.app.play.saved = target, scene
             return fault
 
         def discard() -> None:
@@ -289,21 +289,21 @@ class FileActions:
         return self._renamed(path, typed, SUFFIX, _saved)[1]
 
     def _renamed(
-        self, path: Path, typed: str, suffix: str, told: Callable[[Path], str]
+        self, path: Path, typed: str, suffix: str, message: Callable[[Path], str]
     ) -> tuple[Path | None, str | None]:
-        """Give a file that was saved another name: its path then, or else why not; told: the line about it."""
+        """Give a file that was saved another name: its path then, or else why not; message: the line about it."""
         if typed.removesuffix(suffix) == path.name.removesuffix(suffix):
             return path, None
         try:
-            wanted = chosen_path(path.parent, typed, suffix)
-            move_new(path, wanted)
+            target = chosen_path(path.parent, typed, suffix)
+            move_new(path, target)
         except ValueError as error:
             return None, str(error)
         except OSError as error:
             return None, f"It stays {path.name}: {error.strerror or error}."
-        self.app.take_back(told(path))
-        self.app.say(told(wanted))
-        return wanted, None
+        self.app.take_back(message(path))
+        self.app.say(message(target))
+        return target, None
 
     def _discard(self, path: Path) -> None:
         try:
@@ -311,8 +311,8 @@ class FileActions:
         except OSError as error:
             self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
         else:
-            for told in (_saved, _in_my_levels):
-                self.app.take_back(told(path))
+            for message in (_saved, _in_my_levels):
+                self.app.take_back(message(path))
             self.app.say(f"Removed {path.name}.")
 
 

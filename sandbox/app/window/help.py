@@ -37,8 +37,8 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
     layouts = [_columns(entries, count) for count in range(1, most + 1)]
     layouts = [layout for layout in layouts if sum(_widths(ui, layout)) <= ui.px(width - AROUND - 2 * MARGIN)][-2:]
     layouts = layouts or [_columns(entries, 1)]
-    room = height - AROUND - TOP - MARGIN
-    columns = next((layout for layout in layouts if max(map(_height, layout)) <= room), layouts[-1])
+    available = height - AROUND - TOP - MARGIN
+    columns = next((layout for layout in layouts if max(map(_height, layout)) <= available), layouts[-1])
     needed = max(map(_height, columns))
 
     def reopen(other_ui: Ui) -> None:
@@ -55,12 +55,12 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
     ui.focus_on(area.bar if area.bar.needed else button)
 
 
-Column = dict[str, list[Shortcut]]
+_HelpColumn = dict[str, list[Shortcut]]
 
 
-def _columns(entries: tuple[Shortcut, ...], count: int) -> list[Column]:
+def _columns(entries: tuple[Shortcut, ...], count: int) -> list[_HelpColumn]:
     """The entries by their groups, whole groups side by side in columns as low as can be."""
-    groups: Column = {}
+    groups: _HelpColumn = {}
     for entry in entries:
         groups.setdefault(entry.group, []).append(entry)
     heights = [_height({name: members}) for name, members in groups.items()]
@@ -74,11 +74,11 @@ def _columns(entries: tuple[Shortcut, ...], count: int) -> list[Column]:
     return [dict(each for at, each in zip(best, members, strict=True) if at == k) for k in range(count)]
 
 
-def _height(column: Column) -> float:
+def _height(column: _HelpColumn) -> float:
     return sum(HEADING + ROW * len(entries) for entries in column.values())
 
 
-def _widths(ui: WindowLayout, columns: list[Column]) -> list[int]:
+def _widths(ui: WindowLayout, columns: list[_HelpColumn]) -> list[int]:
     """How wide [pixels] the texts of each column are, with the gap behind it."""
     bold, plain = ui.font(TEXT_SIZE, True), ui.font(TEXT_SIZE)
     widths = []
@@ -96,7 +96,7 @@ def _keys(entry: Shortcut) -> str:
 class ShortcutTable(Widget):
     """All shortcuts in columns."""
 
-    def __init__(self, ui: Ui, rect: pygame.Rect, columns: list[Column], container: Any) -> None:
+    def __init__(self, ui: Ui, rect: pygame.Rect, columns: list[_HelpColumn], container: Any) -> None:
         super().__init__(ui, rect, container)
         self.columns = columns
 
@@ -110,7 +110,7 @@ class ShortcutTable(Widget):
             left += width + spare
         return surface
 
-    def _paint_column(self, surface: pygame.Surface, left: int, column: Column) -> None:
+    def _paint_column(self, surface: pygame.Surface, left: int, column: _HelpColumn) -> None:
         ui, y = self.ui, 0.0
         bold, plain = ui.font(TEXT_SIZE, True), ui.font(TEXT_SIZE)
         widest = max(bold.size(_keys(entry))[0] for entries in column.values() for entry in entries)

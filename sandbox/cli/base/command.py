@@ -38,14 +38,14 @@ class Subcommand(Generic[Options]):
         return self.action(read(parsed, self.options))
 
 
-def _word(**given: Any) -> Any:
+def _word(**settings: Any) -> Any:
     """A field that is told by its place, with what argparse is to know of it."""
-    return field(metadata={"names": None, "group": None, "given": given})
+    return field(metadata={"names": None, "group": None, "given": settings})
 
 
-def _option(*names: str, group: str | None = None, **given: Any) -> Any:
+def _option(*names: str, group: str | None = None, **settings: Any) -> Any:
     """A field that is told by a name; group: options of one group exclude each other."""
-    return field(metadata={"names": names, "group": group, "given": given})
+    return field(metadata={"names": names, "group": group, "given": settings})
 
 
 def argument(parse: Callable[[str], T], metavar: str, help: str | None = None) -> T:
@@ -113,14 +113,14 @@ def declare(parser: argparse.ArgumentParser, options: type[Any]) -> None:
     """Tell a parser of all fields of a class of options."""
     groups: dict[str | None, Any] = {None: parser}
     for each in fields(options):
-        names, group, given = (each.metadata[key] for key in ("names", "group", "given"))
+        names, group, settings = (each.metadata[key] for key in ("names", "group", "given"))
         if group not in groups:
             groups[group] = parser.add_mutually_exclusive_group()
         if names is None:
-            groups[group].add_argument(each.name, **given)
+            groups[group].add_argument(each.name, **settings)
         else:
             usual = () if any(name.startswith("--") for name in names) else (f"--{each.name.replace('_', '-')}",)
-            groups[group].add_argument(*names, *usual, dest=each.name, **given)
+            groups[group].add_argument(*names, *usual, dest=each.name, **settings)
 
 
 def read(parsed: argparse.Namespace, options: type[T]) -> T:

@@ -80,9 +80,9 @@ def first_torque(level: Level, index: int) -> float:
     vehicle = {index, *mount_of(level, index)}
     mass = sum(float(np.sum(expansion(body).mass)) for k, body in enumerate(level.bodies) if k in vehicle)
     mass += sum(part.mass for k, part in enumerate(level.particles, len(level.bodies)) if k in vehicle)
-    share = max(MOTOR_SHARE, CORNERS_SHARE * math.sin(math.pi / wheel.segments))
+    fraction = max(MOTOR_SHARE, CORNERS_SHARE * math.sin(math.pi / wheel.segments))
     gravity = math.hypot(*level.settings.gravity) or WEIGHT
-    return min(significant(share * mass * gravity * wheel.radius, DIGITS), TORQUE_LIMIT)
+    return min(significant(fraction * mass * gravity * wheel.radius, DIGITS), TORQUE_LIMIT)
 
 
 def _motor(part: Definition, scene: Scene | None) -> MotorDef:
@@ -146,13 +146,13 @@ def wave_along(document: Document, start: Point, end: Point, waves: float = 1.0)
         raise EditError("drag farther")
     scene = make_scene(document.level)
 
-    def share(item: Item) -> float:
+    def fraction(item: Item) -> float:
         own = frozenset([item])
         springs = np.flatnonzero(scene.springs_of(own))
         ends = np.concatenate([scene.particle_a[springs], scene.particle_b[springs]])
         return float((scene.position[ends].mean(axis=0) - start) @ way) / squared
 
-    return _with_phases(document, share, waves)
+    return _with_phases(document, fraction, waves)
 
 
 def wave_in_order(document: Document, waves: float = 1.0) -> Document:
@@ -162,14 +162,14 @@ def wave_in_order(document: Document, waves: float = 1.0) -> Document:
     return _with_phases(document, places.__getitem__, waves)
 
 
-def _with_phases(document: Document, share: Callable[[Item], float], waves: float) -> Document:
+def _with_phases(document: Document, fraction: Callable[[Item], float], waves: float) -> Document:
     """The document with the phase of every muscle by its share of the way."""
     if not math.isfinite(waves):
         raise EditError("waves: give a number")
     found = muscles(document)
     if not found:
         raise EditError("there is no muscle; select springs or bodies, and add one under Drive in Properties")
-    level, phases = document.level, {item: _phase(-waves * share(item)) for item in found}
+    level, phases = document.level, {item: _phase(-waves * fraction(item)) for item in found}
     for phase in set(phases.values()):
         alike = frozenset(item for item in found if phases[item] == phase)
         level = changed(level, alike, lambda part, phase=phase: _ahead(part, phase))  # type: ignore[misc]

@@ -136,8 +136,8 @@ def begin_at_rest(document: Document, position: Points, falling: Selection = fro
 
 def _at_rest(part: Definition) -> Definition:
     """A body or particle that does not move at the start."""
-    wanted = {"velocity": (0.0, 0.0), "velocities": None, "spin": 0.0}
-    changes = {name: value for name, value in wanted.items() if part.__dict__.get(name, value) != value}
+    still = {"velocity": (0.0, 0.0), "velocities": None, "spin": 0.0}
+    changes = {name: value for name, value in still.items() if part.__dict__.get(name, value) != value}
     return replaced(part, **changes) if changes else part
 
 
@@ -209,12 +209,12 @@ def keep_pins(document: Document, world: World) -> Document:
     held: Mask = world.inverse_mass[_slots(scene, world)] == 0.0
     differs = held != scene.pinned
     # Of welded particles the first is held for all of them; none may be where all are let go.
-    wanted = {
+    pins = {
         slot: bool(held[slot])
         for slot in np.flatnonzero(differs).tolist()
         if not held[slot] or scene.first_of_weld[slot] == slot
     }
-    return replace(document, level=repinned(document.level, scene, wanted)) if wanted else document
+    return replace(document, level=repinned(document.level, scene, pins)) if pins else document
 
 
 def keep_masses(document: Document, world: World) -> Document:

@@ -215,17 +215,17 @@ def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, 
 def _material(copy: Level, name: str, materials: dict[str, Material]) -> str:
     """What the material of a copy is called among `materials`, which gets it where it has none of its values."""
     built_in = {DEFAULT_MATERIAL: NissenMaterial()}
-    wanted = copy.materials.get(name, built_in.get(name))
-    assert wanted is not None
-    if (materials.get(name, built_in.get(name)) or wanted) == wanted:
+    own = copy.materials.get(name, built_in.get(name))
+    assert own is not None
+    if (materials.get(name, built_in.get(name)) or own) == own:
         if name != DEFAULT_MATERIAL or name in copy.materials:
-            materials.setdefault(name, wanted)
+            materials.setdefault(name, own)
         return name
     for other, material in materials.items():
-        if material == wanted and other.rpartition(" ")[0] == name:
+        if material == own and other.rpartition(" ")[0] == name:
             return other
     free = free_ids(set(materials), [name])[0]
-    materials[free] = wanted
+    materials[free] = own
     return free
 
 

@@ -97,11 +97,11 @@ def _loose(made: Expansion, places: Points, ids: list[str], like: ParticleDef) -
 def _loose_springs(made: Expansion, ids: list[str], like: SpringDef) -> list[SpringDef]:
     """Springs of a body as loose ones, of a given rest length where they do not start at theirs."""
     placed = distances(made.position, made.pairs)
-    given = [
+    lengths = [
         None if abs(rest - now) <= SAME_LENGTH * now else rest
         for rest, now in zip(made.rest_length.tolist(), placed.tolist(), strict=True)
     ]
-    if any(rest is not None and rest > COORDINATE_LIMIT for rest in given):
+    if any(rest is not None and rest > COORDINATE_LIMIT for rest in lengths):
         raise EditError("a spring is too long to keep its rest length by itself")
-    rows = zip(made.pairs.tolist(), given, strict=True)
+    rows = zip(made.pairs.tolist(), lengths, strict=True)
     return [replaced(like, a=ids[a], b=ids[b], rest_length=rest) for (a, b), rest in rows]

@@ -48,8 +48,8 @@ def groups_of(level: Level) -> dict[Item, str]:
 def with_groups(level: Level, selection: Selection) -> Selection:
     """A selection with the whole of every group that one of it is in."""
     groups = groups_of(level)
-    wanted = {groups[item] for item in selection if item in groups}
-    return selection | {item for item, name in groups.items() if name in wanted} if wanted else selection
+    chosen = {groups[item] for item in selection if item in groups}
+    return selection | {item for item, name in groups.items() if name in chosen} if chosen else selection
 
 
 def taken_groups(level: Level) -> set[str]:

@@ -134,8 +134,8 @@ def _add_body(level: Level, known: dict[str, Material], velocity: Point) -> AddB
 
 
 def _add_particle(particle: ParticleDef, velocity: Point) -> AddParticle:
-    given = {name: getattr(particle, name) for name in SAID}
-    return AddParticle(**given | {"velocity": None if particle.pinned else _sum(particle.velocity, velocity)})
+    values = {name: getattr(particle, name) for name in SAID}
+    return AddParticle(**values | {"velocity": None if particle.pinned else _sum(particle.velocity, velocity)})
 
 
 def _sum(one: Point, other: Point) -> Point:

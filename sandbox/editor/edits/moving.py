@@ -90,10 +90,10 @@ def align(document: Document, edge: Edge) -> Document:
     if not len(low):
         return document
     axis = 0 if edge in ("left", "right", "centre_x") else 1
-    share = {"left": 0.0, "bottom": 0.0, "right": 1.0, "top": 1.0}.get(edge, 0.5)
+    fraction = {"left": 0.0, "bottom": 0.0, "right": 1.0, "top": 1.0}.get(edge, 0.5)
     # Of each and of all: the low border, the high one, or the middle between them.
-    own = low[:, axis] + share * (high[:, axis] - low[:, axis])
-    whole = low[:, axis].min() + share * (high[:, axis].max() - low[:, axis].min())
+    own = low[:, axis] + fraction * (high[:, axis] - low[:, axis])
+    whole = low[:, axis].min() + fraction * (high[:, axis].max() - low[:, axis].min())
     return _moved_along(document, parts, whole - own, axis)
 
 

@@ -34,11 +34,11 @@ def free_id(level: Level, base: str) -> str:
     return free_ids(taken_ids(level), [base])[0]
 
 
-def free_ids(taken: set[str], wanted: Iterable[str]) -> list[str]:
+def free_ids(taken: set[str], names: Iterable[str]) -> list[str]:
     """A free id for each of those that are wanted, different from each other; `taken` grows by them."""
     numbers: dict[str, int] = {}
     found = []
-    for name in wanted:
+    for name in names:
         if name in taken:
             match = _NUMBERED.fullmatch(name)
             base = match[1] if match else name
@@ -102,8 +102,8 @@ def _with_companion(level: Level, change: Rewire) -> Level:
     if look is None or look.follow is None:
         return level
     there = {part.id for parts in (level.bodies, level.particles) for part in parts}
-    wanted = next((name for name in (change(look.follow), change(f"{look.follow}.0")) if name in there), None)
-    return level if wanted == look.follow else replaced(level, look=replaced(look, follow=wanted))
+    target = next((name for name in (change(look.follow), change(f"{look.follow}.0")) if name in there), None)
+    return level if target == look.follow else replaced(level, look=replaced(look, follow=target))
 
 
 class _GoneError(Exception):

@@ -90,9 +90,9 @@ def _fitted(old: AnyBody, new: AnyBody, image: Points | None, used: list[int]) -
     if order is not None and np.array_equal(order, np.arange(len(form))):
         return _posed(new, form, shift), None
     cut = old_pairs[list(new.cut)]
-    wanted = np.array(sorted({*used, *new.pinned, *cut.ravel().tolist()}), dtype=np.int64)
-    found = order[wanted] if order is not None else nearest(image[wanted], form)
-    goes = dict(zip(wanted.tolist(), found.tolist(), strict=True))
+    kept = np.array(sorted({*used, *new.pinned, *cut.ravel().tolist()}), dtype=np.int64)
+    found = order[kept] if order is not None else nearest(image[kept], form)
+    goes = dict(zip(kept.tolist(), found.tolist(), strict=True))
     fitted = replaced(
         new,
         pinned=tuple(sorted({goes[index] for index in new.pinned})),
@@ -115,8 +115,8 @@ def _posed(body: AnyBody, form: Points, shift: Points | None) -> AnyBody:
 def _laid_on(old: Points, new: Points) -> Points:
     """The old points with their bounding box laid on that of the new ones."""
     low, size = old.min(axis=0), np.ptp(old, axis=0)
-    share = np.divide(old - low, size, out=np.zeros_like(old), where=size > 0.0)
-    return np.asarray(new.min(axis=0) + share * np.ptp(new, axis=0))
+    fraction = np.divide(old - low, size, out=np.zeros_like(old), where=size > 0.0)
+    return np.asarray(new.min(axis=0) + fraction * np.ptp(new, axis=0))
 
 
 def same_places(points: Points, places: Points) -> Indices | None:
@@ -176,6 +176,6 @@ def _followed(cut: Pairs, pairs: Pairs, goes: dict[int, int], image: Points, for
     if not len(cut) or not len(pairs):
         return ()
     numbers = {pair: k for k, pair in reversed(list(enumerate(map(tuple, np.sort(pairs, axis=1).tolist()))))}
-    wanted = [tuple(sorted((goes[a], goes[b]))) for a, b in cut.tolist()]
+    moved = [tuple(sorted((goes[a], goes[b]))) for a, b in cut.tolist()]
     close = nearest(image[cut].mean(axis=1), form[pairs].mean(axis=1)).tolist()
-    return tuple(sorted({numbers.get(pair, near) for pair, near in zip(wanted, close, strict=True)}))
+    return tuple(sorted({numbers.get(pair, near) for pair, near in zip(moved, close, strict=True)}))

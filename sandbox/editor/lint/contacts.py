@@ -105,7 +105,7 @@ def overlapping_discs(level: Level, scene: Scene) -> Rule:
     large = np.flatnonzero(scene.radius > BODY_RADIUS)[:DISCS]
     joined = _keys(first[scene.particle_a], first[scene.particle_b], len(first))
     yield None
-    told: set[int] = set()
+    reported: set[int] = set()
     for slot in large.tolist():
         apart = scene.position - scene.position[slot]
         reach = scene.radius + scene.radius[slot]
@@ -116,9 +116,9 @@ def overlapping_discs(level: Level, scene: Scene) -> Rule:
         others = others[~np.isin(_keys(first[others], first[slot], len(first)), joined)]
         for other in others.tolist():
             a, b = sorted((int(scene.particle_item[slot]), int(scene.particle_item[other])))
-            if a * count + b in told:
+            if a * count + b in reported:
                 continue
-            told.add(a * count + b)
+            reported.add(a * count + b)
             text = (
                 f'"{scene.names(slot)}" and "{scene.names(other)}" overlap at the start, and will be pushed apart; '
                 "move one away, or join them"

@@ -36,10 +36,10 @@ def hydraulics_at_another_length(level: Level, scene: Scene) -> Rule:
             f"{called(level, item)} begins {apart} m {way} than it is drawn and {deed} at once: without a rest length "
             "a hydraulic begins at its shortest; give it one"
         )
-        wanted = significant(drawn, DIGITS)
+        target = significant(drawn, DIGITS)
         remedy = None
-        if spring.hydraulic.shortest <= wanted <= spring.hydraulic.longest:
-            remedy = Remedy("Begin as drawn", _begin_at(item, wanted))
+        if spring.hydraulic.shortest <= target <= spring.hydraulic.longest:
+            remedy = Remedy("Begin as drawn", _begin_at(item, target))
         many = "{count} hydraulics begin at another length than they are drawn and move at once; give them rest lengths"
         yield Finding("hint", text, frozenset([item]), middle_of(scene, first + index), remedy, many)
     yield None

@@ -74,11 +74,11 @@ def _boxes(level: Level, scene: Scene) -> Iterator[_Box]:
 
 def _columns(boxes: list[_Box], may_touch: bool) -> Iterator[list[_Box]]:
     """Boxes that lie on one another, from the lowest up."""
-    left = sorted(boxes, key=lambda box: box.low)
-    while left:
-        column = [left.pop(0)]
-        while may_touch and (above := next((box for box in left if _lies_on(box, column[-1])), None)) is not None:
-            left.remove(above)
+    remaining = sorted(boxes, key=lambda box: box.low)
+    while remaining:
+        column = [remaining.pop(0)]
+        while may_touch and (above := next((box for box in remaining if _lies_on(box, column[-1])), None)) is not None:
+            remaining.remove(above)
             column.append(above)
         yield column
 

@@ -124,17 +124,17 @@ def _by_ratio(ratio: float, reach: FirmnessRange, present: FirmnessDef | None) -
     return Firmness(hz=significant(min(hz, FREQUENCY_RANGE[1]), DIGITS), ratio=ratio)
 
 
-def _given(level: Level, body: BodyDef, asked: Asked) -> tuple[Firmness | None, Firmness | None]:
+def _reached(level: Level, body: BodyDef, asked: Asked) -> tuple[Firmness | None, Firmness | None]:
     """What is asked of a body, and what it is given: the nearest in reach. Raises EditError where nothing is."""
     reach = _reach(level, body)
     if reach.lowest_mode == 0.0:
         raise EditError(f"the form of {shown(body.id)} is not stiff without pins, so it has no firmness")
-    wanted = asked(reach, body.firmness)
-    if wanted is None:
+    target = asked(reach, body.firmness)
+    if target is None:
         return None, None
-    validated(replaced(body, firmness=asdict(wanted)))
+    validated(replaced(body, firmness=asdict(target)))
     try:
-        return wanted, reach.nearest(wanted)
+        return target, reach.nearest(target)
     except OutOfReach as error:
         raise EditError(f"{shown(body.id)}: {error}") from None
 
@@ -144,8 +144,8 @@ def _with_firmness(document: Document, bodies: Mapping[Item, BodyDef], asked: As
 
     def change(part: Definition) -> Any:
         assert isinstance(part, BodyDef)
-        _, given = _given(level, part, asked)
-        return None if given is None else asdict(given)
+        _, nearest = _reached(level, part, asked)
+        return None if nearest is None else asdict(nearest)
 
     return change_items(document, frozenset(bodies), "firmness", change)
 
@@ -153,9 +153,9 @@ def _with_firmness(document: Document, bodies: Mapping[Item, BodyDef], asked: As
 def _remark(level: Level, bodies: Mapping[Item, BodyDef], asked: Asked) -> str:
     for body in bodies.values():
         try:
-            wanted, given = _given(level, body, asked)
+            target, nearest = _reached(level, body, asked)
         except EditError:
             return ""
-        if given != wanted:
-            return f"{shown(body.id)}: {wanted} is not possible here. It has the nearest value now: {given}"
+        if nearest != target:
+            return f"{shown(body.id)}: {target} is not possible here. It has the nearest value now: {nearest}"
     return ""

@@ -100,10 +100,10 @@ def _first_walls(document: Document) -> dict[str, Any]:
     level = document.level
     around = make_scene(level).bounds()
     box = level.view or around or FIRST_ROOM
-    room = 0.0
+    margin = 0.0
     if level.view is None and around is not None:
-        room = ROOM_SHARE * max(box[2] - box[0], box[3] - box[1], SMALLEST_ROOM)
-    return {"box": tuple(round(c + s * room, ROOM_DECIMALS) for c, s in zip(box, (-1, -1, 1, 1), strict=True))}
+        margin = ROOM_SHARE * max(box[2] - box[0], box[3] - box[1], SMALLEST_ROOM)
+    return {"box": tuple(round(c + s * margin, ROOM_DECIMALS) for c, s in zip(box, (-1, -1, 1, 1), strict=True))}
 
 
 _FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {

@@ -141,10 +141,10 @@ def look_properties(name: str, material: Material) -> list[Property]:
         now = document.level.materials.get(name, NissenMaterial())
         look = new(now.look)
         try:
-            wanted = None if look is None else BodyLook.model_validate(look)
+            checked = None if look is None else BodyLook.model_validate(look)
         except ValidationError as error:
             raise EditError(first_fault(error, "look", 0)) from None
-        return set_material(document, name, replaced(now, look=wanted))
+        return set_material(document, name, replaced(now, look=checked))
 
     def add(document: Document) -> Document:
         return change(document, lambda old: {} if old is None else old.__dict__)

@@ -246,8 +246,8 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
     """Whether it is a line or solid, and its corners."""
     kind = FieldInfo("choice", "Kind", tooltip="An open line, or solid ground.", choices=FORMS)
 
-    def choose(document: Document, wanted: Form) -> Document:
-        return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
+    def choose(document: Document, form: Form) -> Document:
+        return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), form))
 
     def write(document: Document, corners: Sequence[Point]) -> Document:
         points = with_tuples(corners)
@@ -284,8 +284,8 @@ def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Pro
     kind = same(_shape_kind(shape) for shape in shapes)
     about = FieldInfo("choice", "Shape", tooltip="The outline of the jelly.", choices=tuple(SHAPES))
 
-    def choose(document: Document, wanted: str) -> Document:
-        return change_field(document, selection, "shape", partial(_as_shape, wanted))
+    def choose(document: Document, shape: str) -> Document:
+        return change_field(document, selection, "shape", partial(_as_shape, shape))
 
     found = [Property("shape", about, kind, choose)]
     if kind is MIXED:

@@ -127,12 +127,12 @@ class Section:
     is_rare: bool = False
 
 
-def found_sections(sections: Iterable[Section], wanted: str) -> tuple[Section, ...]:
+def found_sections(sections: Iterable[Section], query: str) -> tuple[Section, ...]:
     """The sections with those properties alone that have some words, in any case, in their title or their tooltip.
 
     A word of a section's title finds all of it.
     """
-    words = wanted.casefold().split()
+    words = query.casefold().split()
     found = []
     for section in sections:
         chosen = [
@@ -195,8 +195,8 @@ def part_properties(
     add: makes a document in which those have one that had none.
     """
 
-    def write(document: Document, wanted: bool) -> Document:
-        return add(document) if wanted else change(document, lambda _: None)
+    def write(document: Document, is_there: bool) -> Document:
+        return add(document) if is_there else change(document, lambda _: None)
 
     is_there = same(value is not None for value in values)
     found = [Property(name, about, is_there, write)]

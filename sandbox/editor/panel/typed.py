@@ -128,11 +128,11 @@ def read_outlines(title: str, text: str) -> list[Any]:
     return values[0] if len(values) == 1 else values
 
 
-def _read_json(title: str, text: str, wanted: str) -> list[Any]:
+def _read_json(title: str, text: str, kind: str) -> list[Any]:
     try:
         values: list[Any] = json.loads(f"[{text}]", parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
-        _refuse(title, text, wanted)
+        _refuse(title, text, kind)
     return values
 
 
@@ -164,8 +164,8 @@ def read_touched(title: str, text: str) -> bool | list[str]:
     return words
 
 
-def _refuse(title: str, text: str, wanted: str) -> NoReturn:
-    raise EditError(f"{title}: {shown(text.strip()) if text.strip() else 'nothing'} is not {wanted}") from None
+def _refuse(title: str, text: str, kind: str) -> NoReturn:
+    raise EditError(f"{title}: {shown(text.strip()) if text.strip() else 'nothing'} is not {kind}") from None
 
 
 def _refuse_constant(name: str) -> NoReturn:

@@ -87,8 +87,8 @@ class Autosave:
                 _remove(_lock_path(self._path))
         self._lock = None
 
-    def _write(self, path: Path, wanted: "tuple[_Edit | None, tuple[Orphan, ...]]") -> None:
-        edit, adopted = wanted
+    def _write(self, path: Path, content: "tuple[_Edit | None, tuple[Orphan, ...]]") -> None:
+        edit, adopted = content
         if edit is None:
             path.unlink(missing_ok=True)
         else:

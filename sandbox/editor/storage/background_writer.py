@@ -31,7 +31,7 @@ class BackgroundWriter(Generic[Content]):
         self._noun, self._write = noun, write
         self._changed = threading.Condition()
         # By path: the number of the note, and the content. untried: numbers of notes that nobody has tried to write.
-        self._wanted: dict[Path, tuple[int, Content]] = {}
+        self._queued: dict[Path, tuple[int, Content]] = {}
         self._untried: set[int] = set()
         self._noted = self._writing = 0
         self._thread: threading.Thread | None = None
@@ -46,7 +46,7 @@ class BackgroundWriter(Generic[Content]):
         with self._changed:
             self._drop(path)
             self._noted += 1
-            self._wanted[path] = self._noted, content
+            self._queued[path] = self._noted, content
             self._untried.add(self._noted)
             if self._thread is None:
                 self.is_closing = False
@@ -61,7 +61,7 @@ class BackgroundWriter(Generic[Content]):
         self.settle()
 
     def _drop(self, path: Path) -> None:
-        number, _ = self._wanted.pop(path, (0, None))
+        number, _ = self._queued.pop(path, (0, None))
         if number != self._writing:
             self._untried.discard(number)
 
@@ -75,7 +75,7 @@ class BackgroundWriter(Generic[Content]):
         with self._changed:
             self.is_closing = True
             # What could not be written has a last chance.
-            self._untried.update(number for number, _ in self._wanted.values())
+            self._untried.update(number for number, _ in self._queued.values())
             self._changed.notify_all()
         if self._thread is not None:
             self._thread.join()
@@ -84,13 +84,13 @@ class BackgroundWriter(Generic[Content]):
     def _work(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._wanted or self.is_closing)
-                if not self._wanted or (self.is_closing and not self._untried):
+                self._changed.wait_for(lambda: self._queued or self.is_closing)
+                if not self._queued or (self.is_closing and not self._untried):
                     self._untried.clear()
                     return
-                path = next((each for each, (number, _) in self._wanted.items() if number in self._untried),
-                            next(iter(self._wanted)))  # fmt: skip
-                number, content = self._wanted[path]
+                path = next((each for each, (number, _) in self._queued.items() if number in self._untried),
+                            next(iter(self._queued)))  # fmt: skip
+                number, content = self._queued[path]
                 self._writing = number
             start, fault = time.monotonic(), None
             try:
@@ -104,15 +104,15 @@ class BackgroundWriter(Generic[Content]):
             with self._changed:
                 self.fault, self._writing = fault, 0
                 self._untried.discard(number)
-                if self._wanted.get(path, (0,))[0] == number:
-                    kept = self._wanted.pop(path)
+                if self._queued.get(path, (0,))[0] == number:
+                    kept = self._queued.pop(path)
                     if fault is not None:
-                        self._wanted[path] = kept
+                        self._queued[path] = kept
                 self._changed.notify_all()
                 # A file that goes on changing waits; where another one is noted meanwhile, that is the next.
                 self._changed.wait_for(partial(self._is_pressed, path), pause)
 
     def _is_pressed(self, path: Path) -> bool:
         return self.is_closing or any(
-            other != path and number in self._untried for other, (number, _) in self._wanted.items()
+            other != path and number in self._untried for other, (number, _) in self._queued.items()
         )

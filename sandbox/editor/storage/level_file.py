@@ -79,10 +79,10 @@ class LevelFile:
     @classmethod
     def to_come(cls, path: str | os.PathLike[str], folder: Path | None = None) -> "LevelFile":
         """A file that is written once the level is saved. Raises LevelInUse."""
-        wanted = cls(folder)
-        wanted._lock = wanted._locked(Path(path))
-        wanted.path = Path(path)
-        return wanted
+        made = cls(folder)
+        made._lock = made._locked(Path(path))
+        made.path = Path(path)
+        return made
 
     @classmethod
     def copy_of(cls, path: str | os.PathLike[str], folder: Path | None = None) -> tuple["LevelFile", Level]:
@@ -131,19 +131,19 @@ class LevelFile:
 
         replace: write also where a file of that name is, which is FileExists otherwise.
         """
-        wanted = Path(path)
-        if self.path is not None and _key(wanted) == _key(self.path):
+        target = Path(path)
+        if self.path is not None and _key(target) == _key(self.path):
             return self.save(level, replace)
-        if not replace and os.path.lexists(wanted):
-            raise FileExists(f"{_shown(wanted)} exists already; choose another name, or replace it")
-        lock = self._locked(wanted)
+        if not replace and os.path.lexists(target):
+            raise FileExists(f"{_shown(target)} exists already; choose another name, or replace it")
+        lock = self._locked(target)
         try:
-            warning = self._write(level, wanted)
+            warning = self._write(level, target)
         except StorageError:
             _released(lock)
             raise
         _released(self._lock)
-        self.path, self._lock = wanted, lock
+        self.path, self._lock = target, lock
         self._remember()
         return warning
 

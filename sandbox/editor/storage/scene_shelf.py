@@ -79,10 +79,10 @@ class SceneShelf:
     def _new_path(self) -> Path:
         return self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(6)}{SUFFIX}"
 
-    def _write(self, path: Path, wanted: tuple[RunScene, Path | None]) -> None:
+    def _write(self, path: Path, content: tuple[RunScene, Path | None]) -> None:
         is_new = not path.exists()
         self.folder.mkdir(parents=True, exist_ok=True)
-        write_file(path, b"".join(scene_lines(*wanted)))
+        write_file(path, b"".join(scene_lines(*content)))
         if is_new:
             for old in kept_scenes(self.folder)[KEPT:]:
                 with contextlib.suppress(OSError):

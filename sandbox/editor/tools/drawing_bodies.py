@@ -134,7 +134,7 @@ class LineDrawing(BodyDrawing[AnyLineOptions], Generic[AnyLineOptions]):
     def ends(self, points: list[Snap]) -> dict[str, Any]:
         """Start, end, segments and pins."""
         asked = {"start": self.options.pin_start, "end": self.options.pin_end}
-        pins = tuple(end for (end, wanted), at in zip(asked.items(), points, strict=True) if wanted and at.name is None)
+        pins = tuple(end for (end, pinned), at in zip(asked.items(), points, strict=True) if pinned and at.name is None)
         return {
             "start": points[0].point,
             "end": points[1].point,

@@ -124,16 +124,16 @@ def stepped(about: OptionInfo, value: float | None, by: int) -> float:
     None steps to the least count, or to 1.
     """
     if value is None:
-        wanted = about.least if about.kind == "count" else 1.0
+        target = about.least if about.kind == "count" else 1.0
     elif about.kind == "count":
         return int(min(max(value + by, about.least), about.most))
     elif about.least < 0.0:
-        wanted = round((round(value / SIGNED_STEP) + by) * SIGNED_STEP, 9)
+        target = round((round(value / SIGNED_STEP) + by) * SIGNED_STEP, 9)
     elif value <= 0.0:
-        wanted = 1.0
+        target = 1.0
     else:
         decade = math.floor(math.log10(value))
         steps = [float(f"{digit}e{decade + up}") for up in (-1, 0, 1) for digit in (1, 2, 5)]
         beyond = [step for step in steps if (step > value if by > 0 else step < value)]
-        wanted = beyond[0] if by > 0 else beyond[-1]
-    return min(max(wanted, about.least), about.most)
+        target = beyond[0] if by > 0 else beyond[-1]
+    return min(max(target, about.least), about.most)

@@ -124,8 +124,8 @@ def _ground(scene: Scene, point: Point, within: float, grid: float | None, skip:
     edges = np.flatnonzero(~left_out[scene.edge_item])
     start, end = scene.corner[scene.edge[edges, 0]], scene.corner[scene.edge[edges, 1]]
     along = end - start
-    share, way = nearest_on_segments(np.array(point), start, end)
-    places, distance = start + share[:, None] * along, lengths(way)
+    fraction, way = nearest_on_segments(np.array(point), start, end)
+    places, distance = start + fraction[:, None] * along, lengths(way)
     nearest = int(distance.argmin()) if len(edges) else -1
     if nearest < 0 or distance[nearest] > EDGE_SHARE * within:
         return None
@@ -140,10 +140,10 @@ def _ground(scene: Scene, point: Point, within: float, grid: float | None, skip:
 def _at_grid_line(place: Point, along: Point, start: Point, grid: float) -> Point:
     """Where the nearest line of the grid crosses an edge most squarely; the place itself beyond the edge's ends."""
     axis = 0 if abs(along[0]) >= abs(along[1]) else 1
-    share = (round(place[axis] / grid) * grid - start[axis]) / along[axis]
-    if not 0.0 <= share <= 1.0:
+    fraction = (round(place[axis] / grid) * grid - start[axis]) / along[axis]
+    if not 0.0 <= fraction <= 1.0:
         return place
-    return _rounded(start[0] + share * along[0], start[1] + share * along[1])
+    return _rounded(start[0] + fraction * along[0], start[1] + fraction * along[1])
 
 
 def _ends(scene: Scene, near: NDArray[np.int64]) -> dict[int, str]:

@@ -156,7 +156,7 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
     names = [f"{body.id}:{number}" for body, expanded in made for number in expanded.numbers.tolist()]
     ends = [owners[body.id].first + expanded.pairs for body, expanded in made]
     lengths = [spring.given_length for spring in loose]
-    given = np.array([np.nan if length is None else length for length in lengths], dtype=np.float64)
+    loose_rest = np.array([np.nan if length is None else length for length in lengths], dtype=np.float64)
     used = [np.full(len(expanded.pairs), index[body.material]) for body, expanded in made]
     material = np.concatenate([*used, np.array([index[s.material] for s in loose], dtype=np.int64)]).astype(np.int64)
     pairs = slots[np.concatenate([*ends, plan.spring_ends])]
@@ -168,7 +168,7 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
         names + [f":{number}" for number in range(len(loose))],
         pairs[:, 0],
         pairs[:, 1],
-        rest_length=np.concatenate([*(expanded.rest_length for expanded in plan.bodies), given]) + 0.0,
+        rest_length=np.concatenate([*(expanded.rest_length for expanded in plan.bodies), loose_rest]) + 0.0,
         material=material,
         edge=edge,
         belt=np.where(edge != NO_EDGE, belts, 0.0),

@@ -199,18 +199,18 @@ def _known_material(world: LevelWorld, name: str) -> Material | None:
 
 def _materials(world: LevelWorld, definition: Mapping[str, Any], bodies: list[Any]) -> Any:
     """The materials of a definition, and those of the world that its bodies and springs name."""
-    given = definition.get("materials")
-    if given is not None and not isinstance(given, dict):
-        return given
+    own = definition.get("materials")
+    if own is not None and not isinstance(own, dict):
+        return own
     users = [item for item in (*bodies, *(definition.get("springs") or ())) if isinstance(item, dict)]
     names = dict.fromkeys([DEFAULT_MATERIAL, *(str(item["material"]) for item in users if "material" in item)])
     found = {name: _known_material(world, name) for name in names}
     known = {name: each.model_dump(mode="json") for name, each in found.items() if each is not None}
-    return known | (given or {})
+    return known | (own or {})
 
 
-def _material_faults(world: LevelWorld, level: Level, given: Mapping[str, Any]) -> Iterator[Fault]:
-    for name in given:
+def _material_faults(world: LevelWorld, level: Level, own: Mapping[str, Any]) -> Iterator[Fault]:
+    for name in own:
         known = _known_material(world, name)
         if known is not None and known != level.materials[name]:
             yield f"materials.{name}", "is another material here; leave it out, or give it another name"

@@ -99,16 +99,16 @@ def metric_faults(path: str, asked: MetricAsked, subjects: tuple[str, ...], layo
     elif asked.at_most is not None and asked.at_least is not None and asked.at_least > asked.at_most:
         yield f"{path}.at_least", f"{shown(asked.at_least)} is above at_most, {shown(asked.at_most)}"
     for field in subjects:
-        given, where = getattr(asked, field), f"{path}.{field}"
+        name, where = getattr(asked, field), f"{path}.{field}"
         as_in_check = "box" if field == "zone" else field
-        if given is None and as_in_check in measured.needs:
+        if name is None and as_in_check in measured.needs:
             yield where, f'is missing; "{asked.metric}" is measured of a {_NOUNS[field]}'
-        elif given is not None and not measured.takes(as_in_check):
+        elif name is not None and not measured.takes(as_in_check):
             named = measured.needs_one or measured.needs[:1]
             owner = " or a ".join(["", *named])[4:] if named else "the whole level"
             yield where, f'"{asked.metric}" is measured of {owner}; take the {field} out'
-        elif given is not None:
-            yield from subject_faults(field, where, given, layout)
+        elif name is not None:
+            yield from subject_faults(field, where, name, layout)
     if measured.needs_one and all(getattr(asked, field) is None for field in measured.needs_one):
         where = f"{path}.{measured.needs_one[0]}"
         yield where, f'is missing; "{asked.metric}" is measured of a particle or a body, name one'
@@ -120,16 +120,16 @@ def metric_faults(path: str, asked: MetricAsked, subjects: tuple[str, ...], layo
 _NOUNS = {"particle": "particle", "other": "second particle", "body": "body", "box": "box", "zone": "zone"}
 
 
-def subject_faults(field: str, where: str, given: Any, layout: Layout) -> Iterator[Fault]:
+def subject_faults(field: str, where: str, value: Any, layout: Layout) -> Iterator[Fault]:
     """The fault of a name in the field `body`, or in one of a particle, that does not exist."""
     if field == "body":
-        owner = layout.owners.get(given)
+        owner = layout.owners.get(value)
         if owner is None or owner.loose:
             bodies = [name for name, each in layout.owners.items() if not each.loose]
-            yield where, f"there is no body {shown(given)}" + suggestion(given, bodies)
+            yield where, f"there is no body {shown(value)}" + suggestion(value, bodies)
     elif field in ("particle", "other"):
         try:
-            layout.slot(given)
+            layout.slot(value)
         except LookupError as error:
             yield where, str(error.args[0])
 

@@ -130,10 +130,10 @@ def _touches_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iter
 
 def _crosses_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     yield from names.find("zone", f"{path}.crosses", question.crosses or "")
-    given = [field for field in ("particle", "body") if getattr(question, field) is not None]
-    if len(given) != 1:
-        yield path, "name the particle or the body that crosses" + (", not both" if given else "")
-    for field in given:
+    named = [field for field in ("particle", "body") if getattr(question, field) is not None]
+    if len(named) != 1:
+        yield path, "name the particle or the body that crosses" + (", not both" if named else "")
+    for field in named:
         yield from subject_faults(field, f"{path}.{field}", getattr(question, field), names.layout)
 
 

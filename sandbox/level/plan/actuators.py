@@ -100,8 +100,8 @@ def _muscles(level: Level, bodies: list[Expansion[Any]]) -> Muscles:
     return Muscles(spring, amplitude[spring], period[spring].astype(np.int64), phase[spring], force)
 
 
-def _forces(given: list[float | None]) -> NDArray[np.float64]:
+def _forces(limits: list[float | None]) -> NDArray[np.float64]:
     """The largest forces [N] (k,), infinite without a limit; (0,) if no spring has a limit."""
-    if all(force is None for force in given):
+    if all(force is None for force in limits):
         return np.zeros(0)
-    return np.array([np.inf if force is None else force for force in given])
+    return np.array([np.inf if force is None else force for force in limits])

@@ -53,7 +53,7 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
 
 
 def _add_hands(world: World, hands: PlayerLimits) -> None:
-    names = [f"{MEANINGS[deed].left} left" for deed in hands.budgets]
+    names = [f"{MEANINGS[deed].remaining_words} left" for deed in hands.budgets]
     _append(world, Family.COUNTER, names, counter=[most + 0.0 for most in hands.budgets.values()])
     count = len(world.counter)
     kinds = sorted(CODES, key=CODES.__getitem__)

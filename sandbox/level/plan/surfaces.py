@@ -29,8 +29,8 @@ def terrain_of(level: Level) -> Terrain:
     """The terrain of a level: its pieces in file order, then the walls."""
     usual = level.contacts or ContactsDef()
 
-    def surface(given: float | None, otherwise: float) -> float:
-        return otherwise if given is None else given + 0.0
+    def surface(value: float | None, otherwise: float) -> float:
+        return otherwise if value is None else value + 0.0
 
     chains = [
         Chain(

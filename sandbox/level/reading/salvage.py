@@ -207,8 +207,8 @@ class _Remains:
                 break
             # A line already names the invalid field that is now missing.
             if len(self.faults) <= FAULT_LIMIT:
-                told = [error for error in errors if error["type"] != "missing" or (attempt == 0 and not mended)]
-                self.faults.extend(_told(path, told))
+                reported = [error for error in errors if error["type"] != "missing" or (attempt == 0 and not mended)]
+                self.faults.extend(_as_faults(path, reported))
             wrong = [(place(error["loc"])[len(path) :], error["type"] == "missing") for error in errors]
             value = _without(value, wrong, _REQUIRED.get(path[0], frozenset()))
             if value is None:
@@ -230,10 +230,10 @@ class _Remains:
             index = int(rest[0])
             inner = [int(part) if part.isdigit() else part for part in rest[1:]]
             if len(self.faults) <= FAULT_LIMIT:
-                told = json_path([key, self.places[key][index], *inner])
+                path = json_path([key, self.places[key][index], *inner])
                 # Else a check whose particle was left out would be reported as incomplete.
-                if told not in (place for place, _ in self.faults):
-                    self.faults.append((told, text))
+                if path not in (place for place, _ in self.faults):
+                    self.faults.append((path, text))
             if key == "bodies" and not inner and self._unweld(level.bodies[index].id):
                 continue
             wrong.setdefault((key, index), []).append((inner, False))
@@ -273,7 +273,7 @@ def _inside(path: Path, value: Any) -> dict[str, Any]:
     return {path[0]: {path[1]: value} if isinstance(path[1], str) else [value]}
 
 
-def _told(path: Path, errors: list[Any]) -> Iterator[Fault]:
+def _as_faults(path: Path, errors: list[Any]) -> Iterator[Fault]:
     """Errors of a value in words, placed where it stands in the file."""
     if any(error["type"] == "json_invalid" for error in errors):
         yield json_path(path), "a \\u escape in it is half a character"

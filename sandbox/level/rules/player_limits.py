@@ -22,7 +22,7 @@ class Meaning(NamedTuple):
     commands: tuple[str, ...]
     words: str
     counting: tuple[str, ...] = ()
-    left: str = ""
+    remaining_words: str = ""
 
 
 _ADDING = ("add_particle", "add_spring", "add_body")
@@ -113,7 +113,7 @@ def words_of(kind: str) -> tuple[str, str]:
     """What a type of commands does to things, and what a budget of it counts, in words."""
     for meaning in MEANINGS.values():
         if kind in meaning.commands:
-            return meaning.words, meaning.left.lower()
+            return meaning.words, meaning.remaining_words.lower()
     return kind, ""
 
 
@@ -121,7 +121,7 @@ def left_of(hands: PlayerLimits | None, count: int) -> list[tuple[int, str, int]
     """Of each budget the row among so many counters, its name for players, and how many there are at the start."""
     if hands is None:
         return []
-    return [(hands.row(deed, count), MEANINGS[deed].left, most) for deed, most in hands.budgets.items()]
+    return [(hands.row(deed, count), MEANINGS[deed].remaining_words, most) for deed, most in hands.budgets.items()]
 
 
 def hand_faults(hands: PlayerLimits | None, things: Collection[str]) -> Iterator[Fault]:

@@ -54,7 +54,7 @@ def contacts(world: LevelWorld) -> list[Contact]:
 
     What rules call `touches`. It reads the contacts that the tick leaves, and costs nothing where nobody asks.
     """
-    return list(_told(world, None))
+    return list(_contacts(world, None))
 
 
 def touching_pairs(world: LevelWorld) -> set[Pair]:
@@ -100,14 +100,14 @@ class ContactListener:
 def _hardest(world: LevelWorld, pairs: set[Pair]) -> list[Contact]:
     """Of each of these pairs its contact of the largest impulse."""
     found: dict[Pair, Contact] = {}
-    for each in _told(world, pairs):
+    for each in _contacts(world, pairs):
         known = found.get(each.pair)
         if known is None or each.impulse > known.impulse:
             found[each.pair] = each
     return list(found.values())
 
 
-def _told(world: LevelWorld, pairs: set[Pair] | None) -> Iterator[Contact]:
+def _contacts(world: LevelWorld, pairs: set[Pair] | None) -> Iterator[Contact]:
     """The contacts that push; pairs: only those of these things."""
     pushing = _Pushing.of(world)
     if pairs is not None:

@@ -131,13 +131,13 @@ def plain_lines(pairs: Iterable[list[int]]) -> Iterator[tuple[list[int], bool]]:
     for a, b in pairs:
         beside.setdefault(a, []).append(b)
         beside.setdefault(b, []).append(a)
-    left = dict.fromkeys(beside)
-    while left:
-        joined, found = [next(iter(left))], []
+    remaining = dict.fromkeys(beside)
+    while remaining:
+        joined, found = [next(iter(remaining))], []
         while joined:
             particle = joined.pop()
-            if particle in left:
-                del left[particle]
+            if particle in remaining:
+                del remaining[particle]
                 found.append(particle)
                 joined += beside[particle]
         if max(len(beside[particle]) for particle in found) <= 2:

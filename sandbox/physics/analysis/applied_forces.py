@@ -53,10 +53,10 @@ def contact_points(state: World | Snapshot, position: Floats | None = None) -> C
     tips = np.flatnonzero(kind == TIP)
     # The edge pushes against the corner; what is said is how the corner pushes the edge.
     centre[tips] = state.terrain.vertex[number[tips] // TIP_SHIFT]
-    share, away = nearest_on_segments(centre, start, end)
+    fraction, away = nearest_on_segments(centre, start, end)
     # Right of the way along an edge is outside of what is solid.
     outward = np.stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]], axis=1)
-    beside = (share > 0.0) & (share < 1.0)
+    beside = (fraction > 0.0) & (fraction < 1.0)
     side = np.where(is_solid | (np.sum(outward * away, axis=1) >= 0.0), 1.0, -1.0)
     normal = _unit(np.where(beside[:, None], side[:, None] * outward, away))
     normal[tips] *= -1.0

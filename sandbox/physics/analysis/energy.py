@@ -75,9 +75,9 @@ def constraint_energies(world: World) -> Floats:
     constant = solver.spring_constant(*constraint_coefficients(world, highest=solver.highest), mass, h)
     energies = np.asarray(0.5 * constant * value * value)
     if solver.has_floors:
-        wanted, form = world.constraint_rest.T
-        has_floor = (world.constraint_kind == AREA) & (world.constraint_corners == TRIANGLE) & (wanted * form > 0.0)
-        below = np.minimum(0.0, np.sign(wanted) * (value + (1.0 - FLOOR) * wanted))
+        rest, form = world.constraint_rest.T
+        has_floor = (world.constraint_kind == AREA) & (world.constraint_corners == TRIANGLE) & (rest * form > 0.0)
+        below = np.minimum(0.0, np.sign(rest) * (value + (1.0 - FLOOR) * rest))
         energies += np.where(has_floor, 0.5 * FLOOR_STRENGTH * FLOOR_RATE**2 * mass * below * below, 0.0)
     return energies
 

@@ -384,9 +384,9 @@ def largest_eigenvalue(world: World) -> float:
     vector: Floats = np.random.default_rng(1).standard_normal(int(rows.max()) + 1)
     size = _norm(vector)
     for _ in range(POWER_ITERATIONS):
-        share = (vector / size)[rows]
-        along_x = np.bincount(ends, share * pull_x, world.particle_count)
-        along_y = np.bincount(ends, share * pull_y, world.particle_count)
+        weights = (vector / size)[rows]
+        along_x = np.bincount(ends, weights * pull_x, world.particle_count)
+        along_y = np.bincount(ends, weights * pull_y, world.particle_count)
         # G times the vector  (4)
         vector = np.bincount(rows, pull_x * along_x[ends] + pull_y * along_y[ends]).astype(np.float64, copy=False)
         size = _norm(vector)

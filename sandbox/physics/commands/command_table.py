@@ -165,7 +165,7 @@ class RefusedCommand(ValueError):
         return cls(_OF_DENIED[-answer // DENIED], field, value, ())
 
 
-def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], world: StateArrays) -> Floats:
+def carry_out(pointer: Any, giver: int, name: str, values: Mapping[str, Any], world: StateArrays) -> Floats:
     """Carry out a command of KINDS with what it is given, by name; the numbers that the kernel was given, or answers.
 
     pointer: `world.lent`. Raises IndexError for a slot that is not there or not in use,
@@ -173,29 +173,29 @@ def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], wor
     """
     kind = KINDS[name]
     if kind.slots[0] in _LISTS:
-        slots = whole_numbers(kind.slots[0], given[kind.slots[0]])
+        slots = whole_numbers(kind.slots[0], values[kind.slots[0]])
     else:
-        slots = np.array([_packed(kind, each, given) for each in kind.slots], np.int64)
-    numbers = numbers_of(name, given)
+        slots = np.array([_packed(kind, each, values) for each in kind.slots], np.int64)
+    numbers = numbers_of(name, values)
     arena = np.zeros(1, np.int64)
     while (result := command.command(pointer, arena, giver, kind.code, slots, numbers)) == NO_ARENA:
         arena = np.zeros(int(arena[0]), np.int64)
     if result < 0:
-        raise _fault(kind, -result, given, numbers.tolist(), world)
+        raise _fault(kind, -result, values, numbers.tolist(), world)
     return numbers
 
 
-def numbers_of(name: str, given: Mapping[str, Any]) -> Floats:
+def numbers_of(name: str, values: Mapping[str, Any]) -> Floats:
     """The numbers of a command of KINDS, checked. Raises ValueError."""
     kind = KINDS[name]
-    return np.array([x for each in kind.numbers for x in _checked(kind, each, given)], np.float64)
+    return np.array([x for each in kind.numbers for x in _checked(kind, each, values)], np.float64)
 
 
-def _checked(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> tuple[float, ...]:
+def _checked(kind: KernelCommand, name: str, values: Mapping[str, Any]) -> tuple[float, ...]:
     """The numbers that a command has by a name; none of what is left out. Raises ValueError."""
     if name in ANSWERS:
         return (0.0,) * ANSWERS[name]
-    value = given[name]
+    value = values[name]
     if value is None and f"?{name}" in kind.slots:
         return (0.0,)
     if name in _PAIRS:
@@ -203,10 +203,10 @@ def _checked(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> tuple[
     return (number(name, value, *(_VALUES.get(kind.code, ()) if name == "value" else _RANGES.get(name, ()))),)
 
 
-def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
+def _packed(kind: KernelCommand, name: str, values: Mapping[str, Any]) -> int:
     if name[0] == "?":
-        return int(given[name[1:]] is not None)
-    value = given[name]
+        return int(values[name[1:]] is not None)
+    value = values[name]
     if value is None and f"?{name}" in kind.slots:
         return 0
     if isinstance(value, str) and name in CHOICES:
@@ -217,16 +217,16 @@ def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
 
 
 def _fault(
-    kind: KernelCommand, result: int, given: Mapping[str, Any], numbers: Sequence[float], world: StateArrays
+    kind: KernelCommand, result: int, values: Mapping[str, Any], numbers: Sequence[float], world: StateArrays
 ) -> Exception:
     """Why a command was refused, as the kernel said it."""
     reason, place = result % command.REASONS, result // command.REASONS
     is_list = kind.slots[0] in _LISTS
-    beyond = place - (len(given[kind.slots[0]]) if is_list else len(kind.slots))
+    beyond = place - (len(values[kind.slots[0]]) if is_list else len(kind.slots))
     if beyond >= 0:
         return ValueError(f"{', '.join(kind.numbers)} {list(numbers)}: finite numbers are needed")
     name = kind.slots[0 if is_list else place].lstrip("?")
-    value = given[name][place] if is_list else given[name]
+    value = values[name][place] if is_list else values[name]
     if reason != command.BAD:
         return RefusedCommand(reason, name, value, numbers)
     if name not in _ROWS:

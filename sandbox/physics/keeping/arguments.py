@@ -60,9 +60,9 @@ def slot(argument: str, value: Any, rows: str, count: int) -> int:
 
 def whole_numbers(argument: str, values: Any) -> Slots:
     """A list of whole numbers (k,); what is farther than any slot is FARTHEST."""
-    given = np.asarray(listed(argument, values))
-    if given.dtype.kind == "i" and (given is values or bool not in map(type, values)):
-        return given.astype(np.int64)
+    array = np.asarray(listed(argument, values))
+    if array.dtype.kind == "i" and (array is values or bool not in map(type, values)):
+        return array.astype(np.int64)
     return np.array([max(-1, min(whole(argument, each), FARTHEST)) for each in values], np.int64)
 
 
@@ -77,20 +77,20 @@ def slots(argument: str, values: Any, rows: str, count: int) -> Slots:
 
 def slot_rows(argument: str, values: Any, rows: str, count: int) -> Slots:
     """Rows of slots (k, n) from 0 to count - 1."""
-    given = _plain(argument, values)
-    if given.ndim != 2:
+    array = _plain(argument, values)
+    if array.ndim != 2:
         raise ValueError(f"{argument} {shown(values)}: rows of slots are needed")
-    return slots(argument, given.reshape(-1), rows, count).reshape(given.shape)
+    return slots(argument, array.reshape(-1), rows, count).reshape(array.shape)
 
 
 def check_rows(argument: str, rows: Any, count: int) -> None:
     """Whether rows of an array, by one slot, a list, a slice or flags, are there."""
     if isinstance(rows, slice):
         return
-    given = _plain(argument, rows)
-    if given.dtype.kind == "b" and given.shape == (count,):
+    array = _plain(argument, rows)
+    if array.dtype.kind == "b" and array.shape == (count,):
         return
-    slots(argument, given.reshape(-1), "rows", count)
+    slots(argument, array.reshape(-1), "rows", count)
 
 
 def check_materials(material: NDArray[np.integer], count: int) -> None:
@@ -132,27 +132,27 @@ def floats(
     argument: str, values: ArrayLike, shape: tuple[int, ...], least: float = -math.inf, most: float = math.inf
 ) -> Floats:
     """Finite numbers from least to most, spread over a shape."""
-    given = _numbers(argument, values)
-    is_bad = ~(np.isfinite(given) & (given >= least) & (given <= most))
+    array = _numbers(argument, values)
+    is_bad = ~(np.isfinite(array) & (array >= least) & (array <= most))
     if is_bad.any():
-        raise ValueError(f"{argument} {shown(float(given[is_bad].flat[0]))}: {_range_of(least, most)} is needed")
-    return _spread(argument, given.astype(np.float64), shape)
+        raise ValueError(f"{argument} {shown(float(array[is_bad].flat[0]))}: {_range_of(least, most)} is needed")
+    return _spread(argument, array.astype(np.float64), shape)
 
 
 def floats_or(argument: str, values: ArrayLike, usual: Floats, least: float = -math.inf) -> Floats:
     """Finite numbers of at least `least`, with `usual` in place of each NaN."""
-    given = _numbers(argument, values)
-    is_left_out = np.isnan(given)
-    found = floats(argument, np.where(is_left_out, max(least, 0.0), given), usual.shape, least)
+    array = _numbers(argument, values)
+    is_left_out = np.isnan(array)
+    found = floats(argument, np.where(is_left_out, max(least, 0.0), array), usual.shape, least)
     return np.where(is_left_out, usual, found)
 
 
 def flags(argument: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     """True or false, spread over a shape."""
-    given = _plain(argument, values)
-    if given.dtype.kind != "b":
+    array = _plain(argument, values)
+    if array.dtype.kind != "b":
         raise ValueError(f"{argument} {shown(values)}: true or false is needed")
-    return _spread(argument, given, shape)
+    return _spread(argument, array, shape)
 
 
 def listed(argument: str, values: Any) -> Sequence[Any] | NDArray[Any]:
@@ -181,17 +181,17 @@ def _rows(column: Column, values: ArrayLike, count: int) -> NDArray[Any]:
         return floats(column.name, values, shape, within.lowest, within.high)
     if kind == "b":
         return flags(column.name, values, shape)
-    given = _plain(column.name, values)
-    if given.dtype.kind not in "iu":
+    array = _plain(column.name, values)
+    if array.dtype.kind not in "iu":
         raise ValueError(f"{column.name} {shown(values)}: whole numbers are needed")
-    return _spread(column.name, given, shape)
+    return _spread(column.name, array, shape)
 
 
-def _spread(argument: str, given: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+def _spread(argument: str, array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
     try:
-        return np.broadcast_to(given, shape)
+        return np.broadcast_to(array, shape)
     except ValueError:
-        raise ValueError(f"{argument} of shape {given.shape}: {shape} is needed") from None
+        raise ValueError(f"{argument} of shape {array.shape}: {shape} is needed") from None
 
 
 def _plain(argument: str, values: Any) -> NDArray[Any]:
@@ -202,10 +202,10 @@ def _plain(argument: str, values: Any) -> NDArray[Any]:
 
 
 def _numbers(argument: str, values: ArrayLike) -> NDArray[Any]:
-    given = _plain(argument, values)
-    if given.dtype.kind not in "fiu":
+    array = _plain(argument, values)
+    if array.dtype.kind not in "fiu":
         raise ValueError(f"{argument} {shown(values)}: numbers are needed")
-    return given
+    return array
 
 
 def _range_of(least: float, most: float) -> str:

@@ -173,14 +173,14 @@ def remove_particles(
 
     Raises IndexError for one that is not there or not in use, ValueError, and RefusedCommand.
     """
-    given = [whole_numbers(PARTICLES, particles), whole_numbers(SPRINGS, springs)]
+    listed = [whole_numbers(PARTICLES, particles), whole_numbers(SPRINGS, springs)]
     pointer, arena = block_of(world).pointer, np.zeros(1, np.int64)
-    while (result := remove(pointer, arena, giver, way, *given)) == NO_ARENA:
+    while (result := remove(pointer, arena, giver, way, *listed)) == NO_ARENA:
         arena = np.zeros(int(arena[0]), np.int64)
     place = -result % DENIED if result <= -DENIED else BAD_SLOT - result
     if result <= BAD_SLOT:
-        name, slots = (PARTICLES, given[0]) if place < len(given[0]) else (SPRINGS, given[1])
-        slot = slots[place - (0 if name == PARTICLES else len(given[0]))]
+        name, slots = (PARTICLES, listed[0]) if place < len(listed[0]) else (SPRINGS, listed[1])
+        slot = slots[place - (0 if name == PARTICLES else len(listed[0]))]
         if result <= -DENIED:
             raise RefusedCommand.of_denied(result, "particle" if name == PARTICLES else "spring", int(slot))
         raise IndexError(f"{name} {slot}: it is not there, not in use, or a hand's")

@@ -108,8 +108,8 @@ class BodyMotion:
             return a * stiffness, a * damping
         if self.solver == "iterative":
             # What so many rounds of Gauss-Seidel have made of it.
-            share = 1.0 - max(0.0, 1.0 - a) ** (2 * self.iterations)
-            return share * stiffness, share * damping
+            fraction = 1.0 - max(0.0, 1.0 - a) ** (2 * self.iterations)
+            return fraction * stiffness, fraction * damping
         if self.solver != "direct":
             raise ValueError(f"what {self.solver} makes of a body's wobble is not known")
         limited, capped = _limited(stiffness, damping)
@@ -250,8 +250,8 @@ def errors_of(stiffness: float, damping: float, steps: int) -> NDArray[np.float6
         # x_n = (1 + n (1 - r)) r^n of equal roots
         return np.asarray(((1.0 + n * (1.0 - first)) * first**n).real)
     # x_0 = 1, x_1 = 1 - Cs
-    share = (1.0 - stiffness - second) / (first - second)
-    return np.asarray((share * first**n + (1.0 - share) * second**n).real)
+    weight = (1.0 - stiffness - second) / (first - second)
+    return np.asarray((weight * first**n + (1.0 - weight) * second**n).real)
 
 
 def _roots(stiffness: float, damping: float) -> tuple[complex, complex]:
@@ -263,7 +263,7 @@ def _roots(stiffness: float, damping: float) -> tuple[complex, complex]:
     return complex(1.0 - slow), complex(1.0 - quick)
 
 
-def _last_above(stiffness: float, damping: float, share: float) -> float:
+def _last_above(stiffness: float, damping: float, fraction: float) -> float:
     """Steps until no error above a share is left; inf: never."""
     slow = max(map(abs, _roots(stiffness, damping)))
     if slow >= 1.0:
@@ -273,11 +273,11 @@ def _last_above(stiffness: float, damping: float, share: float) -> float:
     # Where it creeps the first part of it is larger than the whole; where it swings, crossing takes it below.
     first, second = _roots(stiffness, damping)
     amount = abs((1.0 - stiffness - second) / (first - second)) if first != second else 1.0
-    steps = math.log(share / max(amount, 1.0)) / math.log(slow) + 1.0
+    steps = math.log(fraction / max(amount, 1.0)) / math.log(slow) + 1.0
     if steps > LONGEST:
         return steps
     errors = np.abs(errors_of(stiffness, damping, 2 * math.ceil(steps) + 8))
-    return float(np.flatnonzero(errors > share)[-1] + 1)
+    return float(np.flatnonzero(errors > fraction)[-1] + 1)
 
 
 def critical_height(

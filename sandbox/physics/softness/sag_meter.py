@@ -81,7 +81,7 @@ class SagMeter:
         gravity, h = design_gravity(*settings.gravity), 1.0 / settings.tick_rate
         self.range = FirmnessRange(lowest_mode or 1.0, body.length, gravity, h)
         self.curve: SagCurve | None = None
-        self._share = 1.0 if SOLVERS[settings.solver].bounded else USUAL_SHARE
+        self._damping_ratio = 1.0 if SOLVERS[settings.solver].bounded else USUAL_SHARE
         # Where a spring of a pair gets what it has in a substep.
         self._probe = World(settings)
         self._probe.add_particles(["a", "b"], [[0.0, 0.0], [1.0, 0.0]])
@@ -212,12 +212,12 @@ class SagMeter:
         if self._last is None or self.body.support in (Support.FLOOR, Support.ENDS):
             return 0.0
         soft, moved = self._last
-        share = self._softness(pair) / soft
-        return moved * share if float(np.abs(moved).max()) * share < LARGE * self.body.length else 0.0
+        ratio = self._softness(pair) / soft
+        return moved * ratio if float(np.abs(moved).max()) * ratio < LARGE * self.body.length else 0.0
 
     def _softness(self, pair: Pair) -> float:
         stiffness, damping = self._in_substep(pair)
-        return float(softness_of(np.array(stiffness), np.array(damping), self._share))
+        return float(softness_of(np.array(stiffness), np.array(damping), self._damping_ratio))
 
     def _in_substep(self, pair: Pair) -> tuple[float, float]:
         for name, value in zip(("stiffness", "damping", "lowest_mode"), pair, strict=True):
@@ -278,8 +278,8 @@ class SagMeter:
         above = [each for each in known if each[1] >= sag]
         if below and above:
             (soft, low), (softer, high) = below[-1], above[0]
-            share = math.log(sag / low) / math.log(high / low)
-            return soft * (softer / soft) ** min(max(share, 0.03), 0.97)
+            fraction = math.log(sag / low) / math.log(high / low)
+            return soft * (softer / soft) ** min(max(fraction, 0.03), 0.97)
         if known:
             soft, nearest = below[-1] if below else above[0]
             return soft * sag / nearest
@@ -290,7 +290,7 @@ class SagMeter:
     def _trace(self) -> Work:
         """Measure the curve."""
         if not SOLVERS[self.settings.solver].bounded:
-            self._share = yield from self._damping_share()
+            self._damping_ratio = yield from self._damping_share()
         points: list[tuple[float, float]] = []
         yield from self._find_foothold()
         for sag in CURVE:
@@ -301,14 +301,14 @@ class SagMeter:
                 break
             points = sorted([*points, (self._softness(pair), found)])
             rising = [each for k, each in enumerate(points) if k == 0 or each[1] > points[k - 1][1]]
-            self.curve = SagCurve(self._share, tuple(x for x, _ in rising), tuple(y for _, y in rising))
+            self.curve = SagCurve(self._damping_ratio, tuple(x for x, _ in rising), tuple(y for _, y in rising))
 
     def _find_foothold(self) -> Work:
         """Measure a sag from which others can be guessed, the stiffer the later."""
-        for share in FOOTHOLDS:
+        for fraction in FOOTHOLDS:
             if self._has_reference:
                 break
-            _, pair = self._as_soft_as(self._guess(CURVE[0]) * share)
+            _, pair = self._as_soft_as(self._guess(CURVE[0]) * fraction)
             yield from self._sag_of(pair)
 
     def _damping_share(self) -> Measuring:

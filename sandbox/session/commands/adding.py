@@ -33,11 +33,11 @@ class AddParticle(Command):
 
     def carry_out(self, world: LevelWorld, giver: int) -> None:
         (x, y), (vx, vy) = self.position, self.velocity or (0.0, 0.0)
-        given = {"friction": self.friction, "restitution": self.restitution}
+        surface = {"friction": self.friction, "restitution": self.restitution}
         rows = {
             "x": [x], "y": [y], "vx": vx, "vy": vy, "mass": self.mass, "radius": self.radius, "body": -1,
             "pinned": int(self.pinned), **vars(world.surface),
-            **{name: value for name, value in given.items() if value is not None},
+            **{name: value for name, value in surface.items() if value is not None},
         }  # fmt: skip
         _join(world, {"particles": rows}, giver, ADD_PARTICLE)
 

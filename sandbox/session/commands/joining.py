@@ -28,10 +28,10 @@ class AddBody(Command):
     kit: Definition | None = None
 
     def carry_out(self, world: LevelWorld, giver: int) -> None:
-        given = {name: value for name, value in vars(self).items() if value is not None}
-        if ("kit" in given) == ("body" in given) or ("kit" in given and len(given) > 1):
+        fields = {name: value for name, value in vars(self).items() if value is not None}
+        if ("kit" in fields) == ("body" in fields) or ("kit" in fields and len(fields) > 1):
             raise CommandError("say body, or kit: one of the two")
         try:
-            join_definition(world, given, giver)
+            join_definition(world, fields, giver)
         except LevelError as error:
             raise CommandError(str(error)) from None

@@ -272,10 +272,10 @@ def _located_by_hash(recorded: TickHashes, world: World, array: str) -> Divergen
     def fits(other: str) -> bool:
         return other.startswith(digits) and recorded.fits(state_hash(world, present | {array: other}))
 
-    wanted = array_of_hash(getattr(world, BY_STORED[array].name), fits) if digits else None
-    if wanted is None:
+    expected = array_of_hash(getattr(world, BY_STORED[array].name), fits) if digits else None
+    if expected is None:
         return None
-    found = first_difference(world.tick, array, wanted, world)
+    found = first_difference(world.tick, array, expected, world)
     return replace(found, note=f"{_OTHERWISE}; what is expected is told by its hash")
 
 

@@ -124,22 +124,22 @@ def first_divergence(expected: World | Snapshot, world: World) -> Divergence | N
     What the two have of arrays that are as usual, and so in no hash, is no difference.
     """
     for stored, column in BY_STORED.items():
-        wanted, found = getattr(expected, column.name), getattr(world, column.name)
-        if wanted.tobytes() == found.tobytes() or canonical_bytes(wanted) == canonical_bytes(found):
+        there, found = getattr(expected, column.name), getattr(world, column.name)
+        if there.tobytes() == found.tobytes() or canonical_bytes(there) == canonical_bytes(found):
             continue
-        if array_hash(column, wanted) != array_hash(column, found):
+        if array_hash(column, there) != array_hash(column, found):
             known = expected if isinstance(expected, World) else None
-            return first_difference(world.tick, stored, wanted, world, known)
+            return first_difference(world.tick, stored, there, world, known)
     return settings_difference(world.tick, expected.settings, world.settings)
 
 
-def settings_difference(tick: int, wanted: WorldSettings, found: WorldSettings) -> Divergence | None:
+def settings_difference(tick: int, before: WorldSettings, found: WorldSettings) -> Divergence | None:
     """The settings in which two worlds differ, by name; None where they are equal."""
-    names = [each.name for each in fields(WorldSettings) if getattr(wanted, each.name) != getattr(found, each.name)]
+    names = [each.name for each in fields(WorldSettings) if getattr(before, each.name) != getattr(found, each.name)]
     if not names:
         return None
     expected, actual = (
-        ", ".join(f"{name} {_setting_text(getattr(side, name))}" for name in names) for side in (wanted, found)
+        ", ".join(f"{name} {_setting_text(getattr(side, name))}" for name in names) for side in (before, found)
     )
     return Divergence(tick, "settings", None, expected, actual)
 
@@ -148,41 +148,41 @@ def _setting_text(value: Any) -> str:
     return str(list(value)) if isinstance(value, tuple) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _other_rows(family: Family, wanted: World, found: World) -> str:
+def _other_rows(family: Family, known: World, found: World) -> str:
     """What one of two worlds has alone that rows of a family belong to: rules and the like, or else bodies."""
     if family not in OF_RULES:
-        return counts_by_body(wanted, found)
-    told: list[str] = []
+        return counts_by_body(known, found)
+    rows: list[str] = []
     # What a rule follows comes and goes with it.
     for each in (Family.RULE, family) if family in (Family.PROBE, Family.STILL) else (family,):
-        before, after = (Counter(row_names(side, each)) for side in (wanted, found))
-        told = told or [*(f"{name} is gone" for name in before - after), *(f"{name} is new" for name in after - before)]
-    return _first_of(told)
+        before, after = (Counter(row_names(side, each)) for side in (known, found))
+        rows = rows or [*(f"{name} is gone" for name in before - after), *(f"{name} is new" for name in after - before)]
+    return _first_of(rows)
 
 
-def counts_by_body(wanted: World, found: World) -> str:
+def counts_by_body(known: World, found: World) -> str:
     """The bodies that have other counts of particles or springs in two worlds: "cable: 17 -> 16 particles"."""
-    told = []
+    lines = []
     for kind, sign, names in (
-        ("particles", ".", [side.particle_names for side in (wanted, found)]),
-        ("springs", ":", [side.spring_names for side in (wanted, found)]),
+        ("particles", ".", [side.particle_names for side in (known, found)]),
+        ("springs", ":", [side.spring_names for side in (known, found)]),
     ):
         before, after = (Counter(name.rpartition(sign)[0] for name in each) for each in names)
-        told += [
+        lines += [
             f"{body or 'loose'}: {before[body]} -> {after[body]} {kind}"
             for body in {**before, **after}
             if before[body] != after[body] and body != HAND
         ]
-    return _first_of(told)
+    return _first_of(lines)
 
 
-def _first_of(told: Sequence[str]) -> str:
-    more = len(told) - MOST_COUNTED
-    return ", ".join(told[:MOST_COUNTED]) + (f" and {more} more" if more > 0 else "")
+def _first_of(lines: Sequence[str]) -> str:
+    more = len(lines) - MOST_COUNTED
+    return ", ".join(lines[:MOST_COUNTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def first_difference(
-    tick: int, array: str, wanted: NDArray[Any], world: World, expected: World | None = None
+    tick: int, array: str, known: NDArray[Any], world: World, expected: World | None = None
 ) -> Divergence:
     """The first bit of an array, by its name in files, in which a world differs from the expected values.
 
@@ -190,11 +190,11 @@ def first_difference(
     """
     column = BY_STORED[array]
     found: NDArray[Any] = getattr(world, column.name)
-    if len(wanted) != len(found):
+    if len(known) != len(found):
         note = "" if expected is None else _other_rows(column.family, expected, world)
-        return Divergence(tick, array, None, f"{len(wanted)} values", f"{len(found)} values", note=note)
+        return Divergence(tick, array, None, f"{len(known)} values", f"{len(found)} values", note=note)
     size = found.dtype.itemsize
-    left, right = (np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (wanted, found))
+    left, right = (np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (known, found))
     different = np.flatnonzero(left != right)
     if not len(different):
         return Divergence(tick, array, None, "equal", "equal", note="the two runs agree here")
@@ -203,7 +203,7 @@ def first_difference(
     name = slot_name(world, array, place[0])
     there = name if expected is None else slot_name(expected, array, place[0])
     note = "" if there == name else f"what is expected is of {there}"
-    return Divergence(tick, array, index, wanted[place].item(), found[place].item(), name, note)
+    return Divergence(tick, array, index, known[place].item(), found[place].item(), name, note)
 
 
 def differing_particle(divergence: Divergence, state: Snapshot) -> int | None:
@@ -254,9 +254,9 @@ def array_of_hash(found: NDArray[Any], fits: Callable[[str], bool]) -> NDArray[A
             attempt = before.copy()
             attempt.update(number.tobytes() + data[end:])
             if fits(attempt.hexdigest()):
-                wanted = numbers.copy()
-                wanted[place] = number
-                return wanted.view(found.dtype.newbyteorder("<")).astype(found.dtype).reshape(found.shape)
+                tried = numbers.copy()
+                tried[place] = number
+                return tried.view(found.dtype.newbyteorder("<")).astype(found.dtype).reshape(found.shape)
             before.update(data[end - size : end])
             work += len(data) - end + size
             if work > _MOST_WORK:

@@ -169,9 +169,9 @@ class PlayerPage:
             raise OSError(error.errno or 0, error.strerror or str(error), str(path)) from None
 
 
-def _places(ticks: Sequence[int], wanted: Sequence[int]) -> list[int]:
+def _places(ticks: Sequence[int], chosen: Sequence[int]) -> list[int]:
     places = {tick: place for place, tick in enumerate(ticks)}
-    return [places[tick] for tick in wanted]
+    return [places[tick] for tick in chosen]
 
 
 def shown_box(level: Level, state: State) -> NDArray[np.float64]:
@@ -182,8 +182,8 @@ def shown_box(level: Level, state: State) -> NDArray[np.float64]:
     if not len(points):
         points = np.array([[-1.0, -1.0], [1.0, 1.0]])
     low, high = points.min(axis=0), points.max(axis=0)
-    room = MARGIN * max(1.0, float((high - low).max()))
-    return np.concatenate([low - room, high + room])
+    margin = MARGIN * max(1.0, float((high - low).max()))
+    return np.concatenate([low - margin, high + margin])
 
 
 def steps_between(ticks: int, particles: int, sides: int) -> int:
@@ -200,14 +200,14 @@ def told_states(run: Session, first: int, last: int) -> Iterator[LevelWorld]:
     beginning = max(first, run.keyframes(0, present)[0].tick)
     past = run.retold(beginning)
     for tick in range(beginning, last + 1):
-        told = past if tick < present else run
+        current = past if tick < present else run
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                while told.tick < tick:
-                    told.advance()
+                while current.tick < tick:
+                    current.advance()
         except CommandError:
             return
-        yield told.world
+        yield current.world
 
 
 def gathered(reel: PlaybackData, states: Iterable[State], step: int, also: int | None = None) -> PlaybackData:
@@ -288,8 +288,8 @@ def told_of(runs: Sequence[Session], watches: Sequence[TouchWatch]) -> list[Told
         if dropped:
             sides[-1].append((run.tick, f"{dropped} more lines of who touched whom: `sandbox info --all` lists them"))
     common = set.intersection(*map(set, sides))
-    told = {line: ToldLine(*line, None if line in common else side) for side, of in enumerate(sides) for line in of}
-    return sorted(told.values(), key=lambda line: line.tick)
+    lines = {line: ToldLine(*line, None if line in common else side) for side, of in enumerate(sides) for line in of}
+    return sorted(lines.values(), key=lambda line: line.tick)
 
 
 def report_page(found: Comparison, watched: Watched = iter) -> PlayerPage:

@@ -219,8 +219,8 @@ class Recorder:
         """Write what changed in the hashes of the present state, and now and then the state itself."""
         hashes, before = hash_by_array(world), self._hashes
         storing = world.tick % self._state_ticks == 0
-        told = hashes if storing else [name for name in BY_STORED if hashes.get(name) != before.get(name)]
-        arrays = {name: hashes[name][:ARRAY_DIGITS] if name in hashes else None for name in told}
+        names = hashes if storing else [name for name in BY_STORED if hashes.get(name) != before.get(name)]
+        arrays = {name: hashes[name][:ARRAY_DIGITS] if name in hashes else None for name in names}
         self._hashes = hashes
         self._left = leave(world, hashes)
         whole = state_hash(world, hashes)

@@ -313,8 +313,8 @@ class _PairWatch(FailureWatch):
         if self._failure.array not in ("", found):
             return None
         session, column = self._session, BY_STORED[found]
-        told = first_difference(session.tick, found, getattr(session.world, column.name), self._other.world)
-        return FailureSeen(Diverges(self._failure.level, found), f"diverged at {told}")
+        difference = first_difference(session.tick, found, getattr(session.world, column.name), self._other.world)
+        return FailureSeen(Diverges(self._failure.level, found), f"diverged at {difference}")
 
     def _far_apart(self, bound: float) -> FailureSeen | None:
         ours, theirs = self._session.world, self._other.world
@@ -347,8 +347,8 @@ class AnyOf(Failure):
         return "; ".join(map(str, self.failures))
 
     def watch(self, session: Session, kept: Any = None) -> FailureWatch:
-        given = kept or [None] * len(self.failures)
-        return _Watches([each.watch(session, one) for each, one in zip(self.failures, given, strict=True)])
+        states = kept or [None] * len(self.failures)
+        return _Watches([each.watch(session, one) for each, one in zip(self.failures, states, strict=True)])
 
     def raised(self, error: Exception) -> FailureSeen | None:
         return next((seen for each in self.failures if (seen := each.raised(error)) is not None), None)

@@ -45,8 +45,8 @@ class Play:
     @cached_property
     def key(self) -> str:
         """The same for two plays in which the same is done."""
-        told = [[line.tick, line.gesture, line.record] for line in self.lines]
-        return json.dumps([self.ticks, told], sort_keys=True)
+        lines = [[line.tick, line.gesture, line.record] for line in self.lines]
+        return json.dumps([self.ticks, lines], sort_keys=True)
 
     @cached_property
     def gestures(self) -> tuple[int, ...]:
@@ -241,7 +241,7 @@ def _idle_out(play: Play, least: int) -> Generator[Iterable[Play], Answer, None]
         length, place = max((gap for gap in gaps if gap[1] not in tried), default=(0, 0))
         if length < least:
             return
-        counts = dict.fromkeys(max(1, length - round(share * length)) for share in LEFT_OF_IDLE)
+        counts = dict.fromkeys(max(1, length - round(fraction * length)) for fraction in LEFT_OF_IDLE)
         answer = yield [play.without_ticks(ticks[place + 1], count) for count in counts]
         if answer is None:
             tried.add(place)

@@ -295,14 +295,14 @@ def test_text(play: Play, failure: Failure, source: str, recording: Path, levels
 
 def code_of(failure: Failure, other: str | None) -> str:
     """A failure as Python makes it; other: where its other level is."""
-    given = []
+    arguments = []
     for each in fields(failure):  # type: ignore[arg-type]
         value = getattr(failure, each.name)
         if isinstance(value, Level):
-            given.append(_loaded(str(other)))
+            arguments.append(_loaded(str(other)))
         elif value != each.default:
-            given.append(f"{each.name}={_quoted(value)}" if given else _quoted(value))
-    return f"{type(failure).__name__}({', '.join(given)})"
+            arguments.append(f"{each.name}={_quoted(value)}" if arguments else _quoted(value))
+    return f"{type(failure).__name__}({', '.join(arguments)})"
 
 
 def _quoted(value: object) -> str:

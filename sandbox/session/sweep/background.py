@@ -32,18 +32,18 @@ class BackgroundSweep:
 
     def __init__(self, grid: SweepGrid, numbers: Sequence[int], processes: int) -> None:
         self.error: str | None = None
-        self._left = len(numbers)
+        self._remaining = len(numbers)
         self._rows: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._children: list[subprocess.Popen[str]] = []
-        for share in (numbers[first::processes] for first in range(processes)):
-            if share:
-                points = [[number, grid.cases[number]] for number in share]
+        for part in (numbers[first::processes] for first in range(processes)):
+            if part:
+                points = [[number, grid.cases[number]] for number in part]
                 self._start(json.dumps({"request": asdict(grid.request), "points": points}))
 
     @property
     def is_done(self) -> bool:
         """Whether all rows have been given out."""
-        return self._left == 0
+        return self._remaining == 0
 
     def new_rows(self) -> list[tuple[int, list[Any]]]:
         """The rows that have come since the last time, by number."""
@@ -55,7 +55,7 @@ class BackgroundSweep:
                     self.error = line
                 else:
                     found.append((line[0], line[1]))
-        self._left -= len(found)
+        self._remaining -= len(found)
         return found
 
     def stop(self) -> None:

@@ -110,13 +110,13 @@ def _ways(ends: Sequence[Sequence[int]]) -> Iterable[list[int]]:
     for k, (a, _) in enumerate(ends):
         begins.setdefault(a, []).append(k)
     reached = {b for _, b in ends}
-    left = set(range(len(ends)))
-    for first in sorted(left, key=lambda k: (ends[k][0] in reached, k)):
+    remaining = set(range(len(ends)))
+    for first in sorted(remaining, key=lambda k: (ends[k][0] in reached, k)):
         way, at = [], first
-        while at in left:
-            left.remove(at)
+        while at in remaining:
+            remaining.remove(at)
             way.append(at)
-            at = next((k for k in begins.get(ends[at][1], ()) if k in left), -1)
+            at = next((k for k in begins.get(ends[at][1], ()) if k in remaining), -1)
         if way:
             yield way
 
@@ -131,10 +131,10 @@ def mark_belts(
         length = np.sqrt(np.sum(way * way, axis=1))[:, None]
         along = way / np.maximum(length, 1e-9)
         # Pixels count downwards.
-        left = np.stack([along[:, 1], -along[:, 0]], axis=1)
+        normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
         size = scale * (SIDE if belt.side else 1.0)
         inset = belt.side * STRAP_HALF * size if belt.side else STRAP_HALF * size - belt.radius * camera.zoom
-        begin = begin + inset * left
+        begin = begin + inset * normal
         seen = _seen(begin, way, camera.viewport)
         seen[[spring >= 0 and not active[spring] for spring in belt.springs.tolist()]] = 0.0
         drawn = seen[:, 1] > seen[:, 0]
@@ -143,11 +143,11 @@ def mark_belts(
         shares = np.clip(seen, trim, 1.0 - trim)[drawn]
         strap = [begin[drawn] + shares[:, k, None] * way[drawn] for k in range(2)]
         layer.strokes(np.concatenate(strap, axis=1), STRAP_HALF * size, packed(theme.tyre))
-        edge, share = belt.chevrons(camera.zoom, scale, seconds, seen)
+        edge, along_edge = belt.chevrons(camera.zoom, scale, seconds, seen)
         ahead = math.copysign(CHEVRON * size, belt.speed) * along[edge]
-        tip = begin[edge] + share[:, None] * way[edge] + 0.5 * ahead
+        tip = begin[edge] + along_edge[:, None] * way[edge] + 0.5 * ahead
         for across in (-CHEVRON * size, CHEVRON * size):
-            ends = np.concatenate([tip - ahead + across * left[edge], tip], axis=1)
+            ends = np.concatenate([tip - ahead + across * normal[edge], tip], axis=1)
             layer.strokes(ends, CHEVRON_HALF * scale, CHEVRON_COLOUR)
 
 

@@ -235,9 +235,9 @@ AS_LONG = 1e-3
 
 def _strangers(there: Mask, own: Slots) -> Slots:
     """Slots that are there and belong to none of the level's things."""
-    left = there.copy()
-    left[own[own < len(left)]] = False
-    return np.flatnonzero(left)
+    strangers = there.copy()
+    strangers[own[own < len(strangers)]] = False
+    return np.flatnonzero(strangers)
 
 
 class KeptDrawables:

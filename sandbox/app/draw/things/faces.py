@@ -33,14 +33,14 @@ TONGUE = 0xF0708A
 
 class DrawnFace(NamedTuple):
     """A face: slots (n,) that it turns with, their places (n, 2) [m] about their middle at rest; springs whose strain
-    it shows; where it sits about that middle, how much room there is [m], how far [rad] its body was turned when made.
+    it shows; where it sits about that middle, the radius free there [m], how far [rad] its body was turned when made.
     """
 
     slots: Slots
     form: Floats
     springs: Slots
     spot: Floats
-    room: float
+    radius: float
     angle: float
 
 
@@ -57,7 +57,7 @@ class Faces:
         # As seen: pixels count downwards.
         self._form = np.concatenate([row.form for row in rows]) * np.array([1.0, -1.0])
         self._spot = np.array([row.spot for row in rows]) * np.array([1.0, -1.0])
-        self._inner = np.array([row.room for row in rows])
+        self._inner = np.array([row.radius for row in rows])
         angle = np.array([row.angle for row in rows])
         self._upright = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
         self._springs = np.concatenate([row.springs for row in rows])
@@ -210,18 +210,18 @@ def _towards(pointer: tuple[float, float], centre: Floats, size: Floats) -> Floa
 
 def faces_of(actor: Actor, pieces: list[Piece]) -> list[DrawnFace]:
     """The faces of a body and of its pieces: that of the whole stays with the piece it lies on, where it fits."""
-    place, room = actor.spot(spot_of)
+    place, radius = actor.spot(spot_of)
     if len(pieces) == 1 and len(pieces[0].left) == len(actor.triangles()):
-        return [DrawnFace(actor.slots, actor.form, actor.springs, place, room, actor.angle)]
+        return [DrawnFace(actor.slots, actor.form, actor.springs, place, radius, actor.angle)]
     keeper = min(range(len(pieces)), key=lambda k: _away(actor.form[pieces[k].left], place))
     found = []
     for k, piece in enumerate(pieces):
         own = np.unique(piece.left)
         middle = actor.form[own].mean(axis=0)
         spot, inner = _spot_in(actor, piece, place if k == keeper else middle)
-        if inner >= (LEAST_KEPT if k == keeper else LEAST_OWN) * room:
+        if inner >= (LEAST_KEPT if k == keeper else LEAST_OWN) * radius:
             form, springs = actor.form[own] - middle, actor.springs[piece.inside]
-            found.append(DrawnFace(actor.slots[own], form, springs, spot - middle, min(inner, room), actor.angle))
+            found.append(DrawnFace(actor.slots[own], form, springs, spot - middle, min(inner, radius), actor.angle))
     return found
 
 
@@ -250,14 +250,14 @@ def _spot_in(actor: Actor, piece: Piece, near: Floats) -> tuple[Floats, float]:
     end = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     if len(tries) * len(start) > MOST_COMPARED:
         tries = tries[:: 1 + len(tries) * len(start) // MOST_COMPARED]
-    room = distances_from_segments(tries[:, None], start, end).min(axis=1)
+    clearance = distances_from_segments(tries[:, None], start, end).min(axis=1)
     away = tries - near
-    best = int(np.argmax(room - 0.12 * np.sqrt(np.sum(away * away, axis=1))))
-    return tries[best], float(room[best])
+    best = int(np.argmax(clearance - 0.12 * np.sqrt(np.sum(away * away, axis=1))))
+    return tries[best], float(clearance[best])
 
 
 def spot_of(actor: Actor, loop: Slots) -> tuple[Floats, float]:
-    """Where a face sits, about the middle of the form, and how much room there is [m]."""
+    """Where a face sits, about the middle of the form, and the radius that fits there [m]."""
     form = actor.form
     index = {slot: k for k, slot in enumerate(actor.slots.tolist())}
     ring = form[[index[slot] for slot in loop.tolist()]]
@@ -265,6 +265,6 @@ def spot_of(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     tries = np.concatenate([form, 0.5 * (form[:-1] + form[1:]), np.zeros((1, 2))])
     if len(tries) * len(ring) > MOST_COMPARED:
         return np.zeros(2), float(np.sqrt(np.sum(ring * ring, axis=1)).min())
-    room = np.sqrt(np.sum((tries[:, None] - ring[None]) ** 2, axis=-1)).min(axis=1)
-    best = int(np.argmax(room - 0.12 * np.sqrt(np.sum(tries * tries, axis=1))))
-    return tries[best], float(room[best])
+    clearance = np.sqrt(np.sum((tries[:, None] - ring[None]) ** 2, axis=-1)).min(axis=1)
+    best = int(np.argmax(clearance - 0.12 * np.sqrt(np.sum(tries * tries, axis=1))))
+    return tries[best], float(clearance[best])

@@ -79,8 +79,8 @@ class Frame:
         """Colours of strain of springs, and how much of them shows, 0..1."""
         strain = np.nan_to_num(self.strain[springs], nan=0.0, posinf=9.0, neginf=-9.0)
         squeezed, _, stretched = map(packed, self.theme.strain)
-        share = np.clip((np.abs(strain) - FLUSH_FROM) / FLUSH_RANGE, 0.0, 1.0)
-        return np.where(strain > 0.0, stretched, squeezed), 0.7 * share
+        opacity = np.clip((np.abs(strain) - FLUSH_FROM) / FLUSH_RANGE, 0.0, 1.0)
+        return np.where(strain > 0.0, stretched, squeezed), 0.7 * opacity
 
 
 def strain_of(state: Seen, position: Floats) -> Floats:
@@ -168,10 +168,10 @@ class Actor:
         whole: triangles (t, 3) of the world that keep their areas, by slot. A body that keeps no areas, or of a world
         that says nothing of them, has a triangle while the springs along all its sides are there.
         """
-        left = self._whole(there, whole)
-        key = there.tobytes() + left.tobytes()
+        filled = self._whole(there, whole)
+        key = there.tobytes() + filled.tobytes()
         if self._filling is None or self._filling.key != key:
-            pieces = [self._piece(part, there) for part in _parts(left, self.pairs[there], len(self.slots))]
+            pieces = [self._piece(part, there) for part in _parts(filled, self.pairs[there], len(self.slots))]
             inside = np.any([piece.inside for piece in pieces], axis=0) if pieces else np.zeros_like(there)
             self._filling = Filling(key, pieces, inside)
         return self._filling
@@ -188,11 +188,11 @@ class Actor:
         own = index[whole]
         return np.asarray(own[(own >= 0).all(axis=1)])
 
-    def _piece(self, left: Slots, there: Mask) -> Piece:
+    def _piece(self, members: Slots, there: Mask) -> Piece:
         filled = np.zeros(len(self.slots), dtype=np.bool_)
-        filled[left] = True
-        loops = [self.slots[loop] for loop in trace_loops(left)]
-        return Piece(left, loops, np.asarray(there & filled[self.pairs].all(axis=1)))
+        filled[members] = True
+        loops = [self.slots[loop] for loop in trace_loops(members)]
+        return Piece(members, loops, np.asarray(there & filled[self.pairs].all(axis=1)))
 
     def flesh(self, key: bytes, make: Callable[[], Drawn]) -> Drawn:
         """The drawing that `make` makes of it, kept while the key of its filling stays the same."""
@@ -401,12 +401,12 @@ def chains_of(ends: Slots) -> list[tuple[Slots, Slots]]:
         at.setdefault(a, []).append(spring)
         at.setdefault(b, []).append(spring)
     rows = ends.tolist()
-    left = set(range(len(rows)))
+    remaining = set(range(len(rows)))
 
     def walk(first: int, spring: int) -> tuple[Slots, Slots]:
         particles, springs = [first], []
-        while spring in left:
-            left.remove(spring)
+        while spring in remaining:
+            remaining.remove(spring)
             springs.append(spring)
             a, b = rows[spring]
             particles.append(b if particles[-1] == a else a)
@@ -417,9 +417,9 @@ def chains_of(ends: Slots) -> list[tuple[Slots, Slots]]:
         return np.array(particles, dtype=np.int64), np.array(springs, dtype=np.int64)
 
     starts = [(particle, spring) for particle, near in at.items() if len(near) != 2 for spring in near]
-    found = [walk(particle, spring) for particle, spring in starts if spring in left]
-    while left:
-        spring = min(left)
+    found = [walk(particle, spring) for particle, spring in starts if spring in remaining]
+    while remaining:
+        spring = min(remaining)
         found.append(walk(rows[spring][0], spring))
     return found
 

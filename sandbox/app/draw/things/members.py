@@ -279,13 +279,13 @@ def _joined(points: Floats) -> Floats:
 def _coils(ends: Floats, rest: Floats, width: Floats, marks: MarkList, frame: Frame) -> None:
     along, across, _ = _lengthwise(ends)
     wide = np.clip(0.13 * rest, 2.5 * frame.scale, 8.0 * frame.scale) * width
-    share = np.r_[0.0, np.linspace(0.12, 0.88, 2 * TURNS + 1), 1.0]
-    side = np.where(np.arange(len(share)) % 2 == 0, 1.0, -1.0)
+    place = np.r_[0.0, np.linspace(0.12, 0.88, 2 * TURNS + 1), 1.0]
+    side = np.where(np.arange(len(place)) % 2 == 0, 1.0, -1.0)
     side[[0, 1, -2, -1]] = 0.0
-    points = ends[:, None, :2] + along[:, None] * share[:, None] + across[:, None] * (side * wide[:, None])[..., None]
+    points = ends[:, None, :2] + along[:, None] * place[:, None] + across[:, None] * (side * wide[:, None])[..., None]
     lines = _joined(points)
     marks.strokes(lines, 2.5 * frame.scale, DARK, 0.75)
-    tone = np.where(np.arange(len(share) - 1) % 2 == 0, 0xE8EDF6, 0x8E9AB2)
+    tone = np.where(np.arange(len(place) - 1) % 2 == 0, 0xE8EDF6, 0x8E9AB2)
     marks.strokes(lines, 1.5 * frame.scale, np.tile(tone, len(ends)))
 
 
@@ -293,12 +293,12 @@ def _muscles(ends: Floats, rest: Floats, width: Floats, marks: MarkList, frame: 
     # Thick where short: what it holds stays the same.
     along, _, length = _lengthwise(ends)
     belly = np.clip(0.16 * rest * rest / length, 2.5 * frame.scale, 11.0 * frame.scale) * width
-    share = np.linspace(0.0, 1.0, PARTS + 1)
-    lines = _joined(ends[:, None, :2] + along[:, None] * share[:, None])
-    middle = np.sin(0.5 * np.pi * (share[:-1] + share[1:])) ** 1.3
+    place = np.linspace(0.0, 1.0, PARTS + 1)
+    lines = _joined(ends[:, None, :2] + along[:, None] * place[:, None])
+    middle = np.sin(0.5 * np.pi * (place[:-1] + place[1:])) ** 1.3
     half = (1.6 * frame.scale + belly[:, None] * middle).reshape(-1)
     marks.strokes(lines, half + 1.2 * frame.scale, MUSCLE_LINE)
-    period = np.tile(np.column_stack([share[:-1], share[1:]]) * 2.0, (len(ends), 1))
+    period = np.tile(np.column_stack([place[:-1], place[1:]]) * 2.0, (len(ends), 1))
     marks.strips(lines, half, TILE["muscle"], period)
 
 

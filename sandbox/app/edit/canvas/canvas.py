@@ -269,8 +269,8 @@ class ScenePainter:
     def _colours(self, part: Part) -> NDArray[np.int64]:
         """Colours (materials,) of the springs."""
         by_name = material_colours(part.scene.level.materials)
-        share = GHOST_SHARE if part.ghost else 0.0
-        return np.array([packed(mixed(by_name[name], BACKGROUND, share)) for name in part.scene.materials])
+        fade = GHOST_SHARE if part.ghost else 0.0
+        return np.array([packed(mixed(by_name[name], BACKGROUND, fade)) for name in part.scene.materials])
 
     def _width(self, camera: Camera, rest: NDArray[np.float64]) -> float:
         spacing = float(np.median(rest)) * camera.zoom if len(rest) else np.inf
@@ -340,8 +340,8 @@ def draw_grid(surface: pygame.Surface, camera: Camera, scale: float, step: float
     left, top, width, height = camera.viewport
     thick = max(1, round(scale))
     (x0, y1), (x1, y0) = camera.to_world((left, top)), camera.to_world((left + width, top + height))
-    for wanted, colour in ((SNAP_STEP, GRID_FINE), (GRID_STEP, GRID)):
-        spacing = grid_spacing(camera.zoom, wanted * scale)
+    for least, colour in ((SNAP_STEP, GRID_FINE), (GRID_STEP, GRID)):
+        spacing = grid_spacing(camera.zoom, least * scale)
         if step is not None and colour is GRID_FINE and step * camera.zoom >= CLOSEST_LINES * scale:
             spacing = step
         for low, high, vertical in ((x0, x1, True), (y0, y1, False)):

@@ -214,11 +214,11 @@ class Moving(_Matrix):
 
     def to(self, point: Point, modifiers: int) -> None:
         """Drag the selection to a point [m]; Shift keeps to round directions, Alt snaps to nothing."""
-        wanted = (self._anchor[0] + point[0] - self._start[0], self._anchor[1] + point[1] - self._start[1])
+        target = (self._anchor[0] + point[0] - self._start[0], self._anchor[1] + point[1] - self._start[1])
         along = self._anchor if modifiers & pygame.KMOD_SHIFT else None
-        self._snap = self._screen.snapped(wanted, modifiers, along, self._screen.document.selection)
+        self._snap = self._screen.snapped(target, modifiers, along, self._screen.document.selection)
         if self._snap.kind == "grid" and self._taken.kind != "end":
-            self._by = self._steps(wanted)
+            self._by = self._steps(target)
             self._snap = replace(self._snap, point=(self._anchor[0] + self._by[0], self._anchor[1] + self._by[1]))
         else:
             self._by = (self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1])
@@ -244,10 +244,10 @@ class Moving(_Matrix):
         """The document as it would be, where the selection alone cannot show it."""
         return self._held
 
-    def _steps(self, wanted: Point) -> Point:
+    def _steps(self, target: Point) -> Point:
         """The way in whole steps of the grid, for what is not taken by an end: what stands on the grid stays on it."""
         grid = self._screen.grid
-        dx, dy = (round((to - start) / grid) * grid for to, start in zip(wanted, self._anchor, strict=True))
+        dx, dy = (round((to - start) / grid) * grid for to, start in zip(target, self._anchor, strict=True))
         return round(dx, PLACE_DECIMALS) + 0.0, round(dy, PLACE_DECIMALS) + 0.0
 
     def end(self) -> None:

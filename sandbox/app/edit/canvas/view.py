@@ -225,8 +225,8 @@ class DriveMarks:
         along = ((b[0] - a[0]) / length, (b[1] - a[1]) / length)
         half = CYLINDER * scale
 
-        def at(share: float, aside: float) -> Point:
-            x, y = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
+        def at(fraction: float, aside: float) -> Point:
+            x, y = a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])
             return x - along[1] * aside, y + along[0] * aside
 
         outline = [at(0.15, -half), at(0.62, -half), at(0.62, half), at(0.15, half)]
@@ -329,8 +329,8 @@ def _place(scene: Scene, name: str) -> Point | None:
 
 def _draw_dots(surface: pygame.Surface, start: Point, end: Point, scale: float) -> None:
     steps = int(min(math.dist(start, end) / (STEP * scale), 2_000))
-    for share in np.linspace(0.0, 1.0, steps + 1).tolist():
-        at = (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+    for fraction in np.linspace(0.0, 1.0, steps + 1).tolist():
+        at = (start[0] + fraction * (end[0] - start[0]), start[1] + fraction * (end[1] - start[1]))
         pygame.draw.aacircle(surface, ZONE, at, DOT * scale)
     pygame.draw.aacircle(surface, ZONE, end, 3.0 * DOT * scale, max(1, round(1.6 * scale)))
 

@@ -46,8 +46,8 @@ class CataloguePage(SidePage):
         self._columns = COLUMNS_OF_LOW if self._is_low else COLUMNS
         above = 0 if self._is_low else ui.px(BUTTON_HEIGHT + 2 * GAP)
         text_height = 0 if self._is_low else ui.px(TEXT_HEIGHT)
-        room = place.height - above - (0 if self._is_low else text_height + ui.px(GAP))
-        self.area = ScrollArea(ui, pygame.Rect(place.left, place.top + above, place.width, room), container)
+        height = place.height - above - (0 if self._is_low else text_height + ui.px(GAP))
+        self.area = ScrollArea(ui, pygame.Rect(place.left, place.top + above, place.width, height), container)
         if self._is_low:
             self._add_buttons(ui.px(3), 0, width - ui.px(6), self.area.content)
         else:
@@ -145,8 +145,8 @@ class CataloguePage(SidePage):
         if y > 0.0 or not self._is_low:
             self._add_label(title, y, 13.0, HEADING, is_bold=True)
             y += HEADING
-        room = self.area.view.rect.width / ui.scale
-        places, end = card_places(ui, len(parts), self._columns, room, y, GAP)
+        width = self.area.view.rect.width / ui.scale
+        places, end = card_places(ui, len(parts), self._columns, width, y, GAP)
         for place, part in zip(places, parts, strict=True):
             card = PartCard(ui, place, part, self, self.area.content, self._columns)
             if self._is_low and part.level is not None:
@@ -211,9 +211,9 @@ class CataloguePage(SidePage):
         self.refresh()
         if path is not None:
             self._look_for(path)
-        wanted = next((card for card in self.cards if card.part == self._chosen), None) or next(iter(self.cards), None)
-        if wanted is not None:
-            self._ui.focus_on(wanted)
+        focused = next((card for card in self.cards if card.part == self._chosen), None) or next(iter(self.cards), None)
+        if focused is not None:
+            self._ui.focus_on(focused)
 
     # Own parts.
 

@@ -132,12 +132,12 @@ class ChecksPage(SidePage):
 
 
 def _row(check: CheckDef, result: CheckResult | None, is_running: bool, has_keys: bool) -> Row:
-    wanted = f"{promise_text(check)}, {time_text(check)}"
+    promise = f"{promise_text(check)}, {time_text(check)}"
     if check.hold:
-        wanted += f", while {held_text(check)} is held"
+        promise += f", while {held_text(check)} is held"
     elif has_keys and result is not None and not result.passed:
-        wanted += ". Nobody pressed a key: hold one in the check"
+        promise += ". Nobody pressed a key: hold one in the check"
     if result is None:
-        return Row(check.name, f"running: {wanted}" if is_running else wanted, DISABLED)
+        return Row(check.name, f"running: {promise}" if is_running else promise, DISABLED)
     verdict = f"{'holds' if result.passed else 'fails'} with {result.value:.4g} {METRICS[check.metric].unit}".rstrip()
-    return Row(check.name, f"{verdict}: {wanted}", ACCENT if result.passed else DANGER)
+    return Row(check.name, f"{verdict}: {promise}", ACCENT if result.passed else DANGER)

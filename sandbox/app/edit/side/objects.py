@@ -63,24 +63,24 @@ class ObjectsPage(SidePage):
             self.buttons[text] = ui.button(at, text, do, container, style="segment", tip=tip)
         self.lines: list[ObjectLine] = []
         self._shown: tuple[object, object] = (None, None)
-        self._wanted = ""
+        self._query = ""
         self._last = 0
 
     def refresh(self) -> None:
         """Show what there is now."""
         screen = self._screen
-        document, visibility, wanted = screen.document, screen.visibility, self.search.typed
+        document, visibility, query = screen.document, screen.visibility, self.search.typed
         if any(old is not new for old, new in zip(self._shown, (document, visibility), strict=True)) or (
-            wanted != self._wanted
+            query != self._query
         ):
-            self._shown, self._wanted = (document, visibility), wanted
-            self._show(wanted)
+            self._shown, self._query = (document, visibility), query
+            self._show(query)
         pointed = self.list.pointed
         screen.light_up(frozenset() if pointed is None or pointed >= len(self.lines) else self.lines[pointed].items)
 
-    def _show(self, wanted: str) -> None:
+    def _show(self, query: str) -> None:
         screen, level = self._screen, self._screen.document.level
-        self.lines = object_lines(level, wanted)
+        self.lines = object_lines(level, query)
         colours = material_colours(screen.scene.level.materials)
         rows = [self._row(line, colours) for line in self.lines[:LISTED]]
         if len(self.lines) > LISTED:
@@ -88,7 +88,7 @@ class ObjectsPage(SidePage):
         selected = self._selected
         chosen = frozenset(index for index, line in enumerate(self.lines[:LISTED]) if line.items <= selected)
         first = self._last if self._last in chosen else min(chosen, default=None)
-        self.list.empty = NOT_FOUND if wanted.strip() else EMPTY
+        self.list.empty = NOT_FOUND if query.strip() else EMPTY
         self.list.show_rows(rows, first, reveal=True, also=chosen)
         for button in self.buttons.values():
             button.is_enabled = bool(selected)

@@ -191,13 +191,13 @@ class OptionsRow(PropertyWidgets):
 
     def _pages(self, widths: list[float]) -> list[list[int]]:
         """Which items stand side by side: all where they fit, else as many as fit beside the button for more."""
-        room = self.back.rect.width / self._ui.scale - self._x + LABEL_GAP
-        if sum(widths) <= room:
+        available = self.back.rect.width / self._ui.scale - self._x + LABEL_GAP
+        if sum(widths) <= available:
             return [list(range(len(widths)))]
         pages: list[list[int]] = [[]]
         for index, width in enumerate(widths):
             taken = sum(widths[other] for other in pages[-1])
-            if pages[-1] and taken + width > room - MORE_WIDTH - GAP:
+            if pages[-1] and taken + width > available - MORE_WIDTH - GAP:
                 pages.append([])
             pages[-1].append(index)
         return pages

@@ -47,19 +47,19 @@ class PropertiesPage(SidePage):
         self._area = ScrollArea(ui, below, container)
         self.form = Form(screen, self._area, above=6.0, empty=NOT_FOUND)
         self._shown: Document | None = None
-        self._wanted = self._softness = ""
+        self._query = self._softness = ""
 
     def refresh(self) -> None:
         """Show the selection as it is now."""
-        document, wanted, softness = self._screen.document, self.search.typed.strip(), self._measured()
-        if document is not self._shown or (wanted, softness) != (self._wanted, self._softness):
-            if document.selection != (self._shown or document).selection and wanted == self._wanted:
+        document, query, softness = self._screen.document, self.search.typed.strip(), self._measured()
+        if document is not self._shown or (query, softness) != (self._query, self._softness):
+            if document.selection != (self._shown or document).selection and query == self._query:
                 # Something else is selected: it is shown whole.
-                wanted = ""
+                query = ""
                 self.search.typed = ""
-            self._shown, self._wanted, self._softness = document, wanted, softness
+            self._shown, self._query, self._softness = document, query, softness
             sections = _sections(document, softness)
-            self.form.show(found_sections(sections, wanted) if wanted else sections)
+            self.form.show(found_sections(sections, query) if query else sections)
         self.form.refresh()
 
     def _measured(self) -> str:

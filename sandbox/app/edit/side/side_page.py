@@ -91,14 +91,14 @@ class ChosenRow(Picker):
 
 
 class ListHead:
-    """A list that takes a share of a page [pixels], then buttons in columns; `area` is the rest, from `top` on.
+    """A list that takes a fraction of a place [pixels], then buttons in columns; `area` is the rest, from `top` on.
 
     On a low page the chosen row stands for the list, and all of the page is in the area: the head scrolls away. choose,
     empty, most_lines: as of a RowList. top [layout units].
     """
 
     def __init__(
-        self, ui: Ui, place: pygame.Rect, share: float, columns: int, buttons: Sequence[HeadButton],
+        self, ui: Ui, place: pygame.Rect, fraction: float, columns: int, buttons: Sequence[HeadButton],
         choose: Callable[[int], None], container: Any, *, empty: str = "", most_lines: int = 1,
     ) -> None:  # fmt: skip
         self._ui = ui
@@ -110,7 +110,7 @@ class ListHead:
             wide, tall = place.width - ui.px(12), ui.px(2 * LINE_HEIGHT + 2 * PADDING)
             self.list = ChosenRow(ui, pygame.Rect(0, 0, wide, tall), choose, container, empty=empty)
         else:
-            top = pygame.Rect(place.topleft, (place.width - ui.px(6), round(place.height * share)))
+            top = pygame.Rect(place.topleft, (place.width - ui.px(6), round(place.height * fraction)))
             self.list = RowList(ui, top, choose, container, empty=empty, most_lines=most_lines)
         above, gap = self.list.place, ui.px(GAP)
         width = (above.width - (columns - 1) * gap) // columns

@@ -222,10 +222,10 @@ class PadMaps:
     def __init__(self, ui: Ui, place: pygame.Rect, playback: Playback, sweeps: PadSweeps, container: Any) -> None:
         self._ui, self.sweeps = ui, sweeps
         self._figures: dict[str, str | None] = {THEORY: None}
-        room = place.width - ui.px(MENU_EDGES)
+        width = place.width - ui.px(MENU_EDGES)
         for name, figure in measures_of(playback.level).items():
             # Names of checks may be of any length; two that begin alike are told apart by their numbers.
-            (shown,) = wrapped(name, ui.font(MENU_TEXT), room, 1)
+            (shown,) = wrapped(name, ui.font(MENU_TEXT), width, 1)
             number = len(self._figures)
             self._figures[shown if shown not in self._figures else f"{number} {shown}"] = figure
         self.menu = WordPicker(ui, place, list(self._figures), self._chosen, self._choose, container)

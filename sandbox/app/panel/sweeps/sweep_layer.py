@@ -220,10 +220,10 @@ def paint_scale(surface: pygame.Surface, layer: SweepLayer, place: pygame.Rect, 
     y = bar.bottom + px(2)
     surface.blit(first, (bar.left, y))
     surface.blit(last, last.get_rect(topright=(bar.right, y)))
-    room = pygame.Rect(
+    area = pygame.Rect(
         bar.left + first.get_width(), y, bar.width - first.get_width() - last.get_width(), last.get_height()
     )
-    _paint_swatches(surface, list(_swatches(layer)), room, layer, ui)
+    _paint_swatches(surface, list(_swatches(layer)), area, layer, ui)
 
 
 def _swatches(layer: SweepLayer) -> Iterable[tuple[str, bool]]:
@@ -237,19 +237,19 @@ def _swatches(layer: SweepLayer) -> Iterable[tuple[str, bool]]:
 
 
 def _paint_swatches(
-    surface: pygame.Surface, swatches: list[tuple[str, bool]], room: pygame.Rect, layer: SweepLayer, ui: WindowLayout
+    surface: pygame.Surface, swatches: list[tuple[str, bool]], area: pygame.Rect, layer: SweepLayer, ui: WindowLayout
 ) -> None:
     font, size = ui.font(NUMBER_SIZE), ui.px(SWATCH)
     texts = [(font.render(word, True, MUTED), hatched) for word, hatched in swatches]
     gap = ui.px(3)
     width = sum(size + gap + text.get_width() for text, _ in texts) + gap * (len(texts) - 1)
-    x = room.centerx - width // 2
+    x = area.centerx - width // 2
     for text, hatched in texts:
-        box = pygame.Rect(x, room.centery - size // 2, size, size)
+        box = pygame.Rect(x, area.centery - size // 2, size, size)
         pygame.draw.rect(surface, layer.missing_colour, box)
         if hatched:
             pygame.draw.line(surface, BLOWN, box.topleft, box.bottomright)
             pygame.draw.line(surface, BLOWN, box.topright, box.bottomleft)
         pygame.draw.rect(surface, DECADE, box, 1)
-        surface.blit(text, (box.right + gap, room.top))
+        surface.blit(text, (box.right + gap, area.top))
         x = box.right + text.get_width() + 2 * gap
