@@ -48,7 +48,7 @@ class Brought:
         return f"{came} came in"
 
     def said(self) -> str:
-        """One line: what came in, and what did not."""
+        """A line for the person: what was brought in, and what was left out."""
         return self.came + (f"; left out: {', '.join(self.left_out)}" if self.left_out else "")
 
 

@@ -86,7 +86,7 @@ class Sketch:
     metre: float | None = None
 
     def points(self) -> Iterator[Ring]:
-        """All rings and lines."""
+        """The points of all rings and lines."""
         for outline in self.outlines:
             yield from outline.rings
         for line in self.lines:

@@ -21,7 +21,7 @@ LEVEL_SECONDS = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class InfoOptions:
-    """Of what to tell, and how."""
+    """Options of `info`: what to tell, and how."""
 
     files: list[str] = arguments(str, "FILE", "a recording, or a level, which runs by itself")
     seconds: float | None = length_in_seconds("; default: all of a recording, 10 s of a level")

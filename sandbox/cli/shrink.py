@@ -129,7 +129,7 @@ def _leaving(text: str) -> "Failure":
 
 
 def _nothing(name: str, replay: "Replay", failure: "Failure", level: "Level") -> list[str]:
-    """Why there is nothing to shrink."""
+    """The line that says why there is nothing to shrink."""
     from sandbox.level.checks import window_of
     from sandbox.session.compare.comparison import verify
     from sandbox.session.replay.recording import ReplayError

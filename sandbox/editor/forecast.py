@@ -71,7 +71,7 @@ class Forecast:
 
     @property
     def text(self) -> str:
-        """One line for the person."""
+        """The forecast as a line for the person."""
         if self.at_rest is None:
             return "Calculating the forecast"
         if not self.at_rest:

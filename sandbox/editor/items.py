@@ -203,7 +203,7 @@ class Visibility:
         return Visibility(self.hidden, self.locked | items if on else self.locked - items)
 
     def renamed(self, old: Item, new: Item) -> "Visibility":
-        """The same, where an item has another name now."""
+        """The same visibility once an item has another name."""
         return Visibility(_renamed(self.hidden, old, new), _renamed(self.locked, old, new))
 
     def among(self, items: Selection) -> "Visibility":

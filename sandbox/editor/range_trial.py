@@ -35,7 +35,7 @@ class Number:
 
     @property
     def value(self) -> float:
-        """Its value now, as it is typed: angles in degrees."""
+        """The present value as it is typed: angles in degrees."""
         return float(self.about.texts[self.axis or 0])
 
     def set(self, document: Document, value: float) -> Document:
@@ -136,7 +136,7 @@ def _numbers(each: Property) -> list[Number]:
 
 
 def between(low: float, high: float, count: int, *, whole: bool) -> list[float]:
-    """This many values from one to the other, both included, at even distances. Raises EditError."""
+    """`count` values from low to high, both included, at even distances. Raises EditError."""
     if low == high:
         raise EditError("from and to are the same; give a range")
     if not 2 <= count <= MOST:

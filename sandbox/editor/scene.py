@@ -412,7 +412,7 @@ def _shared(
 
 
 def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
-    """All that shapes a body but its place; None where a move alters more than one point."""
+    """Key of a body's form: all its fields but its place; None where a move alters more than one point."""
     if "position" not in body.__dict__ or body.pose is not None:
         return None
     return type(body), *(value for name, value in body.__dict__.items() if name not in _PLACED)

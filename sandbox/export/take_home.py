@@ -49,7 +49,7 @@ _BY_MASS = {
 
 @dataclass(frozen=True)
 class TakeHome:
-    """All that is taken home of one body.
+    """The numbers of one body that another engine needs, and what to know about them.
 
     level: its title. chosen: the body, with Cs and Cd of a tick under `solver`. The loop is proven below demand = 4 /
     n_eff of Cs + 2 Cd, and holds says whether the level's own are. Other bodies that are joined to it must be within

@@ -66,7 +66,7 @@ def implicit_masses(stiffness: float, damping: float, mass: float) -> tuple[floa
 
 @scalar_kernel
 def implicit_impulse(stiff: float, restoring: float, growth: float, error: float, h: float) -> float:
-    """Impulse [N s] of the implicit form, with K and K beta [kg] and the velocity error `growth` [m/s] of the step."""
+    """Impulse [N s] of the implicit form; stiff: K, restoring: K beta [kg], growth: the step's velocity error [m/s]."""
     # J = -(K (x' - x) / h + K beta x / h)  (7)
     return -(stiff * growth + restoring * error / h)
 

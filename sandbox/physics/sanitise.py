@@ -75,7 +75,7 @@ def contain_motion(state: State, good: GoodValues, ranges: Ranges, found: Slots,
 
 @inner_kernel
 def keep_motion(state: State, good: GoodValues) -> None:
-    """Keep what a tick has moved as good."""
+    """Copy the motion that a tick left to the last good values."""
     for p in range(state.position.shape[0]):
         for axis in range(2):
             good.position[p, axis] = state.position[p, axis]

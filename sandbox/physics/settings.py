@@ -62,7 +62,7 @@ class WorldSettings:
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Its numbers as kernels read them."""
+        """The settings that are numbers, in the order of the kernels' array."""
         return (*self.gravity, *self.wind, self.drag, self.warm_start)
 
     @classmethod
@@ -77,7 +77,7 @@ class WorldSettings:
 
     @property
     def choices(self) -> tuple[int, int, int, int, int]:
-        """Its whole numbers as kernels read them; SUBSTEP_COUNT 0: each tick chooses."""
+        """The settings that are whole numbers, as kernels read them; SUBSTEP_COUNT 0: each tick chooses."""
         auto = self.substeps == AUTO
         substeps = 0 if auto else int(self.substeps)
         return SOLVER_NAMES.index(self.solver), self.tick_rate, substeps, int(auto), self.iterations

@@ -227,7 +227,7 @@ class StateArrays:
     tick: int
 
     def __repr__(self) -> str:
-        """What it is, in a line; hands that hold are left out."""
+        """The world in a line; hands that hold are left out."""
         hands = int(np.count_nonzero(self.spring_active & (self.material == GRAB_MATERIAL)))
         particles, springs = (
             int(np.count_nonzero(each)) - hands for each in (self.particle_active, self.spring_active)

@@ -204,7 +204,7 @@ class World(StateArrays):
 
     @property
     def form_table(self) -> FormTable:
-        """Its forms as kernels take them, and what was found of them."""
+        """The forms of bodies as kernels take them, with what was found of them."""
         table = self.lasting(FormTable)
         table.follow(self.forms)
         return table
@@ -216,7 +216,7 @@ class World(StateArrays):
 
     @property
     def equipment(self) -> Equipment:
-        """Its constant part, beside its state; replaced as a whole."""
+        """The world's constant part, beside its state; replaced as a whole."""
         return Equipment(*(getattr(self, name) for name in Equipment._fields))
 
     @equipment.setter

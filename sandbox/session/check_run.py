@@ -115,7 +115,7 @@ class CheckWatch:
         return decided
 
     def keep(self) -> Any:
-        """All that it has measured until now, for a watch of another run of the level in the same state to go on."""
+        """The measured values until now, for a watch of another run of the level that goes on from the same state."""
         return self._gauge.keep(), {number: each.found for number, each in self._waiting.items()}
 
     def go_on(self, kept: Any) -> None:
@@ -171,7 +171,7 @@ class _Gauge:
         self._started = world.tick
 
     def keep(self) -> Any:
-        """What it follows."""
+        """The gauge's state, to be taken up again."""
         return list(self._strains), dict(self._still), self._started
 
     def go_on(self, kept: Any) -> None:
@@ -239,7 +239,7 @@ class _Gauge:
         return int(np.count_nonzero(of_body & ~hands) - np.count_nonzero(shown_springs(world) & of_body))
 
     def _of_owner(self, world: World, check: CheckDef) -> float:
-        """Of a particle, or of a body's centre of mass."""
+        """The metric of a particle, or of a body's centre of mass."""
         if check.particle is not None:
             return particle_metric(world, check.particle, check.metric)
         shown = self._shown(check.body)

@@ -63,7 +63,7 @@ class Event:
         return f"{self.tick / rate:8.2f} s  {self.text}{until}"
 
     def data(self, rate: int) -> dict[str, Any]:
-        """The same for programs, ready for JSON."""
+        """The event as a dict, ready for JSON."""
         return {
             **asdict(self),
             "names": list(self.names),
@@ -110,7 +110,7 @@ class TouchWatch:
         self._listener: ContactListener | None = None
 
     def following(self, states: Iterable[LevelWorld]) -> Iterator[LevelWorld]:
-        """These states, each watched before it is passed on."""
+        """Pass states on, each watched before."""
         for world in states:
             self.watch(world)
             yield world
@@ -196,7 +196,7 @@ def events_of(run: Session, watch: TouchWatch | None = None) -> list[Event]:
 
 
 def event_log_of(run: Session, watch: TouchWatch | None = None) -> list[Event]:
-    """The same to be read: one line for many that are alike."""
+    """The event log of a run as a person reads it: one line for many that are alike."""
     return grouped(events_of(run, watch), run.level.settings.tick_rate)
 
 
@@ -216,12 +216,12 @@ def watched_event_log(
 
 
 def in_order(events_of: Iterable[Event]) -> list[Event]:
-    """In the order of time, and of causes within a tick."""
+    """Events in the order of time, and of causes within a tick."""
     return sorted(events_of, key=_when)
 
 
 def shortened(events_of: Sequence[Event], most: int = MOST_LINES) -> tuple[list[Event], int]:
-    """So many of a list, and how many were left out: the last ones of who touched whom, and nothing else."""
+    """At most so many events, and how many were left out: the last of those of touching, and no others."""
     touches = [each for each in events_of if each.kind in _OF_TOUCHES]
     dropped = touches[max(0, most - (len(events_of) - len(touches))) :]
     left_out = set(dropped)
@@ -410,7 +410,7 @@ def _record_text(record: Record) -> str:
 
 
 def grouped(events_of: Sequence[Event], rate: int) -> list[Event]:
-    """In the order of time, many that are alike and soon after each other as one; rate: ticks in a second."""
+    """Events in the order of time, many that are alike and soon after each other as one; rate: ticks in a second."""
     gap = round(SOON * rate)
     by_kind: dict[str, list[Event]] = {}
     for each in in_order(events_of):
@@ -434,13 +434,13 @@ def listed(names: Iterable[str]) -> str:
 
 
 def _when(event: Event) -> tuple[int, int, int]:
-    """By the tick; in one tick what was done before what came of it, and what rules ask before what they do."""
+    """Sort key: the tick; in one tick deeds before what came of them, and questions of rules before actions."""
     kind = event.kind
     return event.tick, KINDS.index(kind) if kind in KINDS else -1, event.last
 
 
 def _joined(those: list[Event], gap: int, many: Callable[[str, list[Event]], str]) -> Iterator[Event]:
-    """Those of one kind, in the order of time, joined by what most of them share a name of."""
+    """Events of one kind, in the order of time, joined by the name that most of them share."""
     remaining = dict.fromkeys(those)
     counts = Counter(name for each in those for name in dict.fromkeys(_keys(each)))
     for name, count in counts.most_common():

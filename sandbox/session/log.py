@@ -97,27 +97,27 @@ class Reached:
 
 
 class ReachedStates:
-    """The last such states of a run: undo and redo lead back to them."""
+    """The last states of a run: undo and redo lead back to them."""
 
     def __init__(self) -> None:
         self._kept: deque[Reached] = deque(maxlen=REACHED_KEPT)
 
     def copy(self) -> "ReachedStates":
-        """The same ones."""
+        """A copy that keeps the same states."""
         result = ReachedStates()
         result._kept = self._kept.copy()
         return result
 
     def has(self, tick: int) -> bool:
-        """Whether the last one is of a tick."""
+        """Whether the last kept state is of a tick."""
         return bool(self._kept) and self._kept[-1].state.tick == tick
 
     def keep(self, reached: Reached) -> None:
-        """Keep one, in place of the oldest."""
+        """Keep a state, in place of the oldest."""
         self._kept.append(reached)
 
     def last_of(self, history: list[LogEntry], tick: int) -> Reached | None:
-        """The last one that a run of this history was in on its way to a tick."""
+        """The last kept state that a run of this history had on its way to a tick."""
         found = [each for each in self._kept if each.leads_to(history, tick)]
         return max(found, key=lambda each: (each.state.tick, len(each.history)), default=None)
 
@@ -136,7 +136,7 @@ def note_tick_events(tick_events: EventsByTick, world: World) -> None:
 
 
 def until(tick_events: EventsByTick, tick: int) -> EventsByTick:
-    """Those up to a tick."""
+    """The events up to a tick."""
     return {each: found for each, found in tick_events.items() if each <= tick}
 
 

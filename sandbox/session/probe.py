@@ -68,7 +68,7 @@ class _Followed:
         return "x", "y", "vx", "vy", *(("angle", "spin") if self.loose else ())
 
     def values(self, world: World, readings: Mapping[str, MotorReading]) -> list[str]:
-        """Its columns, empty while there is no such thing."""
+        """Values of the probe's columns, empty while the thing is not there."""
         if self.is_motor and self.name in readings:
             found = [readings[self.name].torque, readings[self.name].share]
         elif not self.is_motor and _exists(world, self.name):

@@ -62,13 +62,13 @@ class Keyframes:
         return self._kept[0]
 
     def copy(self) -> "Keyframes":
-        """The same ones."""
+        """A copy that keeps the same states."""
         result = copy(self)
         result._kept, result._passed = self._kept.copy(), self._passed.copy()
         return result
 
     def before(self, tick: int) -> Keyframe:
-        """The last one at or before a tick."""
+        """The last keyframe at or before a tick."""
         found = self._kept[bisect.bisect_right(self._kept, tick, key=_tick) - 1]
         return max((each for each in self._passed if found.tick < each.tick <= tick), key=_tick, default=found)
 
@@ -128,7 +128,7 @@ class Keyframes:
         self._drop([kept for kept in self._kept if kept.tick <= tick])
 
     def onward(self, first: Keyframe) -> "Keyframes":
-        """One of them and those that follow it."""
+        """The keyframes from one of them on."""
         result = Keyframes(first)
         result._spacing = self._spacing
         result._set([first, *(kept for kept in self._kept if kept.order >= first.order and kept.tick > first.tick)])
@@ -231,7 +231,7 @@ class RunHistory:
             self.timeline.append(entry)
 
     def begun(self, tick: int) -> list[LogEntry]:
-        """The last beginning of each thing that can go on, such as a hand that holds, until a tick."""
+        """Of each thing that goes on, such as a hand that holds, its last beginning until a tick."""
         begun = {
             key: entry
             for entry in self.timeline

@@ -78,7 +78,7 @@ class RunScene:
         return actions_in_words(self.script)
 
     def follows(self, earlier: "RunScene") -> bool:
-        """Whether it is the same run as another scene, or that run gone on."""
+        """Whether the scene is of the same run as another, or of that run gone on."""
         return self.level == earlier.level and earlier.is_done_by(self.script[: len(earlier.script)])
 
     def is_done_by(self, script: Sequence[ScriptLine]) -> bool:

@@ -65,7 +65,7 @@ class Session:
         self._recorder: Recorder | None = None
 
     def __repr__(self) -> str:
-        """What it is, in a line."""
+        """The session in a line."""
         past = f" of {self.last_tick}" if self.tick < self.last_tick else ""
         recorded = "" if self.recording is None else f", recorded to {self.recording}"
         count = len(self.history.done)
@@ -547,7 +547,7 @@ class Session:
             self._rewind(self.history.return_to(branch))
 
     def _step(self, order: int) -> None:
-        """One tick; order: of the next command to come."""
+        """Make one tick; order: that of the next command to come."""
         self.world.contained.clear()
         if self.level.rules:
             self._actions.act(self.world)

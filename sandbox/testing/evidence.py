@@ -123,7 +123,7 @@ def _words(error: OSError) -> str:
 
 
 def folder_of(config: pytest.Config) -> Path:
-    """Where they go. Raises OSError."""
+    """The folder for pictures and recordings of failed tests. Raises OSError."""
     output = config.getoption("--replay-output")
     if output:
         folder = config.invocation_params.dir / output

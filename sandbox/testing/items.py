@@ -33,7 +33,7 @@ class ToldItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where it stands, and what it is called."""
+        """File, line and name of the test, for pytest's report."""
         return self.path, None, self.name
 
 

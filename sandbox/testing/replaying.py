@@ -59,7 +59,7 @@ class Update:
     checks: list[str] = field(default_factory=list)
 
     def to_text(self) -> str:
-        """It as a line of JSON, which processes hand on."""
+        """The update as a line of JSON, which processes hand on."""
         return json.dumps(asdict(self))
 
 
@@ -124,7 +124,7 @@ class _Golden:
         return (file_of(self.level) if self.level is not None else "") or "level"
 
     def moves_told(self) -> list[str]:
-        """Another title or file of its level, a line each."""
+        """Lines that say which title or file of the level has changed."""
         if self.level is None:
             return []
         pairs = {
@@ -222,7 +222,7 @@ def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
 
 
 def _usual_level(files: Sequence[Path], replay: Replay) -> Level | None:
-    """That of a recording among the level files of a project; None where there is none."""
+    """The level file of a project that a recording is of; None where there is none."""
     found, name = _fitting(files, replay), file_of(replay.level)
     if name and not found and not _is_shipped(replay.level):
         warnings.warn(
@@ -238,7 +238,7 @@ def _usual_level(files: Sequence[Path], replay: Replay) -> Level | None:
 
 
 def _is_shipped(level: Level) -> bool:
-    """Whether it is as the program ships it."""
+    """Whether the level is as the program ships it."""
     return any(path.name == file_of(level) and level_of(path) == level for path in shipped_levels())
 
 
@@ -353,7 +353,7 @@ def check_rollback(config: pytest.Config, replay: "Replay", level: "Level | None
 
 
 def check_rollback_of_level(config: pytest.Config, level: "Level") -> None:
-    """The same of a level that random hands play. Raises Failed."""
+    """Check rollback of a level that random hands play. Raises Failed."""
     from sandbox.session.compare.rollback import roll_back_level
 
     back = config.getoption("--replay-rollback")

@@ -19,7 +19,7 @@ _NAP = 0.01
 
 
 class IdleTimer:
-    """Follows frames; has_come: nothing has happened for so long that they may come rarely."""
+    """Idle time of the person: has_come once nothing was pressed and nothing moved for IDLE_AFTER."""
 
     def __init__(self) -> None:
         self._quiet = 0.0
@@ -50,7 +50,7 @@ _UNSEEN, _LOOK = 0.6, 0.5
 
 
 class Stillness:
-    """Follows snapshots; lasted [s]: how long everything has stood."""
+    """How long everything in the run has been at rest, as seen on the screen: lasted [s]."""
 
     def __init__(self) -> None:
         self.lasted = 0.0

@@ -202,7 +202,7 @@ def word_pairs(meter: SagMeter, body: BodyMotion) -> Pairs:
 
 
 def _coefficient(value: float) -> float:
-    """In few digits, or with few digits of what it is below 1 by: that says how firm a stiff body is."""
+    """A coefficient in few digits, or by few digits of its distance from 1: that says how firm a stiff body is."""
     if value < 0.5:
         return float(f"{value:.{_PAIR_DIGITS}g}")
     return round(1.0 - float(f"{1.0 - value:.{_PAIR_DIGITS}g}"), _DECIMALS)
@@ -234,7 +234,7 @@ def subject_words(name: str, support: Support) -> str:
 
 
 def size_word(support: Support) -> str:
-    """Of what a sag is a share: "height"."""
+    """What a sag is measured against, by how the body is held: its "height", or what else it hangs by."""
     return _SEEN[support][2]
 
 

@@ -67,7 +67,7 @@ class Shortcut:
 
     @property
     def name(self) -> str:
-        """What it is called where a person's own keys are kept: actions of two modes may have one name."""
+        """The name under which a person's own keys are kept: actions of two modes may have one name."""
         return f"{self.mode or 'any'}.{self.action}"
 
 

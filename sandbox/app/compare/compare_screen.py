@@ -344,7 +344,7 @@ class Difference:
 
 
 def _with_unit(value: float, unit: str) -> str:
-    """A figure that grows and shrinks, in few letters."""
+    """A value with its unit, in few letters."""
     if not np.isfinite(value) or value > 1e7:
         return "beyond measure"
     digits = 0 if value >= 100.0 else 1 if value >= 10.0 else 2

@@ -122,7 +122,7 @@ def words(trial: SpringTrial, exploded_at: int | None) -> str:
 
 
 def lesson_picture(size: tuple[int, int], theme: ThemeName) -> pygame.Surface:
-    """Both sides beside each other in a size [pixels] and a theme."""
+    """A picture of both springs side by side, in a size [pixels] and a theme."""
     whole = pygame.Surface((2 * SIZE[0], SIZE[1]), 0, 32)
     for k, (trial, is_hooke) in enumerate(SIDES):
         level = lesson_level(trial, is_hooke)

@@ -191,7 +191,7 @@ class _RimPen:
         return slots[np.isfinite(self.frame.at[slots]).all(axis=1)]
 
     def apart(self, at: Floats, size: Floats) -> Slots:
-        """Of places (k, 2) [pixels] in one cell the one of the largest size (k,), by index."""
+        """Indices of places (k, 2) [pixels]: in each cell of a grid that of the largest size (k,)."""
         finite = np.flatnonzero((np.abs(at) < 1e6).all(axis=1))
         order = finite[np.argsort(-size[finite], kind="stable")]
         cells = np.floor(at[order] / (CELL * self.frame.scale)).astype(np.int64)

@@ -216,7 +216,7 @@ class Preview:
 
     @property
     def moves(self) -> bool:
-        """Whether it plays, or is about to: not where the level cannot be played in a card."""
+        """Whether the preview plays, or is about to: not where the level cannot be played in a card."""
         return not self._has_ended
 
     def update(self, frame_time: float) -> bool:

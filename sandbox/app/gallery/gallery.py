@@ -492,7 +492,7 @@ class Header:
         self.search: Field = ui.field(search, query, lambda _: True, sheet, 80, hint=SEARCH)
 
     def _buttons(self, app: Application, right: float) -> float:
-        """New, Open file and Settings, up to the right; where they begin."""
+        """Add New, Open file and Settings, the last of them ending at `right`; where the first begins."""
         ui, sheet = self._ui, self._sheet
         documents = app.documents
         new = documents.new_place if app.mode == "edit" else documents.play_new

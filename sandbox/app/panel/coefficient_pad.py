@@ -115,7 +115,7 @@ class CoefficientPad(Draggable):
     # Mouse and keys.
 
     def can_drag(self) -> bool:
-        """Whether there is anything to set."""
+        """Whether the pad can be dragged."""
         return self.state.enabled
 
     def on_release(self, at: Pixel) -> None:

@@ -34,7 +34,7 @@ class ContactSettings:
 
     @property
     def other(self) -> "ContactSettings":
-        """The same with contacts on where they are off, or off where they are on."""
+        """These settings with contacts switched: on where they are off, off where they are on."""
         return replace(self, is_on=not self.is_on)
 
 

@@ -38,7 +38,7 @@ class EarlierRuns:
         self._after: tuple[Playback, int] | None = None
 
     def begin_again(self, playback: Playback, earlier: RunScene | None) -> None:
-        """Another run takes the place of one that was left as it stood, None where nothing was done in it."""
+        """Remember the run that another takes the place of, as it stood; None where nothing was done in it."""
         self._after = None
         if earlier is not None:
             self.before = earlier

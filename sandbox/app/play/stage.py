@@ -362,7 +362,7 @@ class Stage:
         self._hovered = None if at is None else self.tool.target(at, within, self.playback.current)
 
     def film(self, span: tuple[int, int]) -> Film:
-        """These ticks of the run as it is seen."""
+        """A film of some ticks of the run as the stage shows it."""
         return Film(self.playback.session, self.camera, self.renderer, span, self.fitted_box)
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:

@@ -99,7 +99,7 @@ class BarState:
 
 
 def fitting(actions: Sequence[str], width: float, is_wide: bool = False) -> list[str]:
-    """Those of the actions whose buttons fit side by side into a width [layout units], with that of the menu.
+    """The actions whose buttons fit side by side into a width [layout units], the menu's button included.
 
     is_wide: with words on them and wider gaps between the groups.
     """

@@ -125,11 +125,11 @@ class Playback:
 
     @property
     def length(self) -> int:
-        """The last tick that can be gone to."""
+        """The last tick that `seek` can reach."""
         return self.travel.length(self.watching)
 
     def reset(self) -> "Playback":
-        """The same level or replay from its beginning, at the same speed."""
+        """Go back to the beginning of the level or replay, at the same speed."""
         fresh = Playback(self.level, self.replay)
         fresh.clock = replace(self.clock, speed=abs(self.clock.speed), accumulator=0.0, single_steps=0)
         fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span

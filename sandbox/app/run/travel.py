@@ -38,7 +38,7 @@ class Travel:
         self._deeds: dict[int, str] = {}
 
     def length(self, watching: bool) -> int:
-        """The last tick that can be gone to; watching: whether the replay is followed to its end."""
+        """The last tick that the time bar can reach; watching: whether the replay is followed to its end."""
         reached = self._session.last_tick
         return max(reached, self._replay.ticks) if watching and self._replay is not None else reached
 

@@ -69,7 +69,7 @@ class Stack:
         self._size, self._font = size, plain_font(max(11, size[0] // 60), True)
 
     def draw(self, shown: Sequence[Shown]) -> pygame.Surface:
-        """One picture of all of them, a new surface."""
+        """One picture of all tiles of the stack, a new surface."""
         width, height = self._size
         picture = pygame.Surface((width, (height + CAPTION) * len(shown)), 0, 32)
         picture.fill(PAPER)

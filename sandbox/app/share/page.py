@@ -332,7 +332,7 @@ _LINK_HINT = (
 
 
 class LinkCopying:
-    """One link at a time; `update` goes on with it a slice a frame."""
+    """Copies links, one at a time; `update` goes on with the present one a slice a frame."""
 
     def __init__(self, app: Application) -> None:
         self._app = app
@@ -363,7 +363,7 @@ class LinkCopying:
 
     @property
     def moves(self) -> bool:
-        """Whether it is at work."""
+        """Whether a link is being made."""
         return self._slices is not None
 
     def update(self) -> None:

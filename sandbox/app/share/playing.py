@@ -69,7 +69,7 @@ def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None =
 
 
 def playable(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> Playable:
-    """As `page_of`, for a page of any kind. Raises CommandError."""
+    """The run for a page of any kind, as `page_of` makes it. Raises CommandError."""
     return at_once(playable_in_slices(level, script, ticks))
 
 

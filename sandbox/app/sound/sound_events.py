@@ -329,7 +329,7 @@ def _held(world: World) -> list[tuple[int, float]]:
 
 
 def _loudest(found: Slots, loudness: Floats) -> list[int]:
-    """At most MOST of what was found, the loudest."""
+    """The MOST loudest of the sounds that were found."""
     order = np.argsort(-loudness[found], kind="stable")[:MOST]
     return [int(each) for each in found[order]]
 

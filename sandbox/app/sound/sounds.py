@@ -51,7 +51,7 @@ CARD = Path("/dev/snd/controlC0")
 
 
 def may_have_sound() -> bool:
-    """Whether it is worth to look for a device; on Linux the search itself would print lines where there is none."""
+    """Whether to look for a sound device; on Linux the search itself would print lines where there is none."""
     if not sys.platform.startswith("linux") or os.environ.get("SDL_AUDIODRIVER") or os.environ.get("PULSE_SERVER"):
         return True
     runtime = Path(os.environ.get("XDG_RUNTIME_DIR", f"/run/user/{os.getuid()}"))

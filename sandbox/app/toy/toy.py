@@ -105,7 +105,7 @@ class Toy:
         return self._pressed or not self.motion.rests or self.rest.moves_fast
 
     def frame(self, seconds: float) -> None:
-        """One turn: events, ticks, a picture; asleep: events alone."""
+        """One frame: events, ticks, a picture; asleep: events alone."""
         events = pygame.event.get()
         for event in events:
             self._handle(event)

@@ -51,7 +51,7 @@ class Button(Written):
 
     @property
     def is_selected(self) -> bool:
-        """Whether it is shown as chosen, or as on."""
+        """Whether the button is drawn as chosen, or as switched on."""
         return self._is_selected
 
     @is_selected.setter

@@ -72,7 +72,7 @@ class Field(Widget):
 
     @property
     def selected(self) -> tuple[int, int]:
-        """From where to where letters are selected; both the place of the caret: none are."""
+        """First and last place of the selected letters; both are the caret's where none are selected."""
         low, high = sorted((self._line.caret, self._line.mark))
         return low, high
 
@@ -82,7 +82,7 @@ class Field(Widget):
 
     @property
     def is_number(self) -> bool:
-        """Whether it shows a number, or a word in the place of one."""
+        """Whether the field holds a number, or a word in the place of one."""
         try:
             float(self.text)
         except ValueError:

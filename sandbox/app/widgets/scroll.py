@@ -40,7 +40,7 @@ class ScrollBar(Widget):
 
     @property
     def needed(self) -> bool:
-        """Whether there is more than is seen."""
+        """Whether the content is higher than its view."""
         return self.height > self.page
 
     def _thumb(self) -> tuple[float, float]:

@@ -68,7 +68,7 @@ class Slider(Draggable):
         return round(self.rect.left + margin + self.state.scale.place_of(value) * (self.rect.width - 2 * margin))
 
     def can_drag(self) -> bool:
-        """Whether there is anything to set."""
+        """Whether the slider can be dragged."""
         return self.state.enabled
 
     def on_release(self, at: Pixel) -> None:

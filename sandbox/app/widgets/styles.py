@@ -157,7 +157,7 @@ class Plate(Widget):
         self._style = PANELS[style]
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface | None:
-        """Its background, if it has one."""
+        """The background of the plate's style, if it has one."""
         back, rim, radius = self._style
         if back is CLEAR:
             return None
@@ -168,5 +168,5 @@ class Plate(Widget):
         return surface
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Nothing, and the press ends here."""
+        """Take the press and do nothing, so that no widget below gets it."""
         return True

@@ -33,7 +33,7 @@ def shortened(text: str, font: pygame.font.Font, widest: int) -> str:
 
 
 def line_height(font: pygame.font.Font) -> int:
-    """From one line of a text that wraps to the next [pixels]."""
+    """Distance [pixels] of the lines of a text that wraps."""
     return round(font.get_linesize() * 0.95)
 
 
@@ -69,7 +69,7 @@ class Label(Written):
         return self.ui.font(self.style.size, self.style.is_bold)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """As much of the text as fits."""
+        """As much of the label's text as fits."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
         text = self.font.render(shortened(self.text, self.font, size[0]), True, self.style.text)
         surface.blit(text, (round((size[0] - text.width) * self.style.side), (size[1] - text.height - 1) // 2))
@@ -94,7 +94,7 @@ class TextBlock(Written):
         self.text, self.text_size, self.colour, self.is_bold = text, size, colour, is_bold
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """As many lines as fit."""
+        """As many lines of the text as fit."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
         font = self.ui.font(self.text_size, self.is_bold)
         height = line_height(font)

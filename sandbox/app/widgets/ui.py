@@ -197,7 +197,7 @@ class Ui(WindowLayout):
 
     @property
     def _page(self) -> list[Widget]:
-        """All of the topmost page."""
+        """The widgets of the topmost page."""
         if self._sheets:
             return list(self.walk(self._sheets[-1].panel))
         return list(self.walk())

@@ -107,7 +107,7 @@ class Widget:
 
     @property
     def image(self) -> pygame.Surface | None:
-        """Its picture, with its colours multiplied by their alpha; where there is no room for it, nothing."""
+        """The widget's picture, its colours multiplied by their alpha; None where there is no room for it."""
         if self._is_stale:
             self._is_stale = False
             picture = self.paint((max(self.rect.width, 0), max(self.rect.height, 0)))
@@ -121,17 +121,17 @@ class Widget:
 
     @property
     def focused(self) -> bool:
-        """Whether it has the keyboard."""
+        """Whether the widget has the keyboard."""
         return self.ui.focus is self
 
     @property
     def in_hand(self) -> bool:
-        """Whether it has the keyboard, or was clicked last."""
+        """Whether the widget has the keyboard, or was clicked last."""
         return self is (self.ui.focus or self.ui.origin)
 
     @property
     def visible(self) -> bool:
-        """Whether it is shown, and all that holds it."""
+        """Whether the widget and all that holds it are shown."""
         return self._is_visible and (self.parent is None or self.parent.visible)
 
     @visible.setter
@@ -142,12 +142,12 @@ class Widget:
 
     @property
     def is_shown(self) -> bool:
-        """Whether it is shown where that which holds it is."""
+        """Whether the widget is shown where its holder is."""
         return self._is_visible
 
     @property
     def is_enabled(self) -> bool:
-        """Whether it can be used."""
+        """Whether the widget can be used."""
         return self._is_enabled
 
     @is_enabled.setter

@@ -333,7 +333,7 @@ class App:
     # The loop.
 
     def frame(self, frame_time: float) -> None:
-        """One turn: events, ticks, drawing; frame_time [s] since the last one."""
+        """One frame: events, ticks, drawing; frame_time [s] since the last one."""
         started = time.perf_counter()
         self._seconds += frame_time
         with self.profile.part("events"):

@@ -146,10 +146,10 @@ class WindowOptions(LookOptions):
 
 
 def length_in_seconds(text: str) -> float | None:
-    """How long a run is; text: of what, and how long without it."""
+    """The option for the length of a run in seconds; text: of what, and how long without it."""
     return option(seconds, help=f"simulated time{text}", group=_LENGTH)
 
 
 def length_in_ticks() -> int | None:
-    """The same in another unit: one of the two may be given."""
+    """The option for the length of a run in ticks: it excludes that in seconds."""
     return option(count, help="the same, in ticks", group=_LENGTH)

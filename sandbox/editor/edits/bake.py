@@ -282,7 +282,7 @@ def keep_added(document: Document, world: LevelWorld) -> Document:
 
 
 def keep_added_things(document: Document, world: LevelWorld) -> Document:
-    """As `keep_added`, without the springs that join them to others. Raises EditError."""
+    """Keep bodies added in play, as `keep_added`, without springs that join them to others. Raises EditError."""
     level, _ = _with_things(document.level, world)
     return document if level is document.level else replace(document, level=checked(level))
 

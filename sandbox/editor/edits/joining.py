@@ -100,7 +100,7 @@ def _able_to_join(part: Level) -> Level:
 
 
 def _unsaid(particle: ParticleDef, is_held: bool) -> str:
-    """The first field of a particle that no command can set; empty where there is none."""
+    """The first field of a particle that the command AddParticle cannot set; empty where there is none."""
     said = SAID | UNSEEN
     if is_held:
         said |= OF_FREE_DISCS | frozenset(MeshDef.model_fields)

@@ -23,12 +23,12 @@ class Motion:
 
     @property
     def is_even(self) -> bool:
-        """Whether it keeps angles."""
+        """Whether the motion keeps angles."""
         return abs(self.sx) == abs(self.sy)
 
     @property
     def is_mirror(self) -> bool:
-        """Whether it turns right into left."""
+        """Whether the motion turns right into left."""
         return self.sx * self.sy < 0.0
 
     @property

@@ -40,7 +40,7 @@ class GirderEditing(BodyEditing[GirderDef]):
         return "slanting girder"
 
     def can_stretch(self) -> bool:
-        """Whether it lies along an axis."""
+        """Whether the girder can be stretched: it lies along an axis."""
         return self.body.start[0] == self.body.end[0] or self.body.start[1] == self.body.end[1]
 
     def mapped(self, motion: Motion) -> dict[str, Any]:

@@ -70,7 +70,7 @@ class JellyDrawing(BodyDrawing[JellyOptions]):
 
     @property
     def step(self) -> str:
-        """What it is called in the history, whatever its shape."""
+        """Name of the step in the history, whatever shape was drawn."""
         return "Draw jelly"
 
     def fitting(self, points: list[Snap]) -> int:

@@ -49,7 +49,7 @@ class RingDrawing(RoundDrawing[RingOptions]):
     counted = "segments"
 
     def joins(self, index: int) -> bool:
-        """There is no particle in its centre."""
+        """False: a ring has no particle in its centre to join."""
         return index == 1
 
     def fitting(self, points: list[Snap]) -> int:

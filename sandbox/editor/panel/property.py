@@ -66,7 +66,7 @@ class Property:
 
     @property
     def editable(self) -> bool:
-        """Whether it can be changed here."""
+        """Whether the property can be changed here."""
         return self.write is not None
 
     @property

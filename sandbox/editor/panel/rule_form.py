@@ -191,7 +191,7 @@ def _changed(document: Document, index: int, change: Callable[[Level, _Data], _D
 
 
 def _asking(index: int, document: Document, change: Callable[[Level, _Data], _Data]) -> Document:
-    """As `_changed`, of what the rule asks; fields that are None go."""
+    """Change the question of a rule, as `_changed`; fields that are None go."""
 
     def new(level: Level, data: _Data) -> _Data:
         when = change(level, data["when"])

@@ -39,7 +39,7 @@ class Result:
         return self.ticks / self.rate
 
     def is_better_than(self, other: "Result | None") -> bool:
-        """Whether it has more stars than another result, or as many in less time."""
+        """Whether the result has more stars than another, or as many in less time."""
         return other is None or (-self.stars, self.seconds) < (-other.stars, other.seconds)
 
 

@@ -201,7 +201,7 @@ class LevelFile:
 
 
 def _key(path: Path) -> str:
-    """The same short text for every name of one file."""
+    """Key of a file, the same for every name that leads to it."""
     try:
         real = os.path.normcase(os.path.realpath(path))
     except ValueError:  # a null character, which reading and writing refuse in words
@@ -265,12 +265,12 @@ class PartFile:
 
     @property
     def fault(self) -> str:
-        """One line that says what is wrong with it; empty where nothing is."""
+        """The line that says what is wrong with the file; empty where nothing is."""
         return _read(self.path, self.stamp)[1]
 
     @property
     def name(self) -> str:
-        """What it is called: by the level's name, of a broken one by the file's."""
+        """The part's name: that of its level, or the file's where the level cannot be read."""
         level = self.level
         return one_line(self.path.stem) if level is None else level.name
 

@@ -48,7 +48,7 @@ class ChassisDrawing(Drawing[ChassisOptions]):
     end_hint = "Click or release at the other axle"
 
     def joins(self, index: int) -> bool:
-        """It comes with axles of its own."""
+        """False: a chassis comes with axles of its own."""
         return False
 
     def placed(self, document: Document, points: list[Snap]) -> Document:

@@ -52,7 +52,7 @@ class HangersDrawing(Drawing[HangersOptions]):
 
     @property
     def step(self) -> str:
-        """What it is called in the history."""
+        """Name of the step in the history."""
         return "Draw hangers"
 
     def ghost(self, document: Document) -> Document | None:

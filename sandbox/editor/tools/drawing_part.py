@@ -34,7 +34,7 @@ class PartDrawing(Drawing[PartOptions]):
 
     @property
     def step(self) -> str:
-        """What it is called in the history."""
+        """Name of the step in the history."""
         return "Add a part" if self.options.part is None else f"Add {self.options.part.name}"
 
     def take(self, part: Level) -> None:

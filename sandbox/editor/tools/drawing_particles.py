@@ -102,7 +102,7 @@ class PinDrawing(Drawing[PinOptions]):
 
     @property
     def step(self) -> str:
-        """What it is called in the history."""
+        """Name of the step in the history."""
         return "Pin or unpin"
 
     @property

@@ -241,7 +241,7 @@ class EditorTool:
 
     @property
     def title(self) -> str:
-        """What it is called in the window."""
+        """Name of the tool in the window."""
         return self.word or self.name
 
 

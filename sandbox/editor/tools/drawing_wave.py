@@ -30,7 +30,7 @@ class WaveDrawing(Drawing[WaveOptions]):
 
     @property
     def step(self) -> str:
-        """What it is called in the history."""
+        """Name of the step in the history."""
         return "Phase wave"
 
     @property

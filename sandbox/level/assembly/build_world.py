@@ -39,7 +39,7 @@ class LevelWorld(World):
     joined: tuple[JoinedLevel, ...]
 
     def __init__(self, level: Level) -> None:
-        """Without particles yet."""
+        """A world with the settings of a level, still without particles."""
         materials = dict.fromkeys([DEFAULT_MATERIAL, *level.materials])
         super().__init__(WorldSettings(**dict(level.settings)), list(materials))
         self.level = level

@@ -105,7 +105,7 @@ def _member_faults(path: str, question: QuestionDef, names: _RuleNames) -> Itera
 
 
 def _no_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
-    """Of what names nothing."""
+    """No faults: such a question or action names nothing."""
     yield from ()
 
 

@@ -61,7 +61,7 @@ class Bridge(Expansion[BridgeDef]):
         return {"start": 0, "end": self.body.segments}
 
     def named_pins(self) -> list[int]:
-        """Both rows, at the ends that `pin` names."""
+        """Particles of both rows at the ends that `pin` names."""
         top = [self.named_particles[end] for end in self.body.pin]
         return top + [particle + self.body.segments + 1 for particle in top]
 

@@ -33,7 +33,7 @@ class GirderDef(BodyDef):
 
 
 class Girder(Expansion[GirderDef]):
-    """Two rows, half a cell apart along the way."""
+    """A beam of two rows of particles, half a cell apart along the way."""
 
     model = GirderDef
     plural = "girders"

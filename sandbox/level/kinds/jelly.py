@@ -250,7 +250,7 @@ class Jelly(Expansion[JellyDef]):
 
     @property
     def _is_disc(self) -> bool:
-        """Whether it is fitted in rings."""
+        """Whether the jelly is a disc, which is meshed in rings."""
         return self._is_fitted and isinstance(self.body.shape, CircleShape) and not self.body.holes
 
     @property

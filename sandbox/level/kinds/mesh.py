@@ -73,7 +73,7 @@ class Mesh(Expansion[MeshDef]):
 
     @property
     def bending(self) -> BendingDef | None:
-        """Whether it is stiff."""
+        """Stiffness of bending, if the mesh has any."""
         return self.body.bending
 
     @property
@@ -82,7 +82,7 @@ class Mesh(Expansion[MeshDef]):
         return edges_of(self.pairs, *directed_sides(self.polygons(), self.form_count[0]), self.form_count[0])
 
     def polygons(self) -> Pairs:
-        """Its triangles (t, 3)."""
+        """The mesh's triangles (t, 3)."""
         return np.array(self.body.triangles, dtype=np.int64).reshape(-1, 3)
 
     def hull(self) -> Pairs:

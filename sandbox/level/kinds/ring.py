@@ -32,7 +32,7 @@ class RingDef(BodyDef):
 
 
 class Ring(Expansion[RingDef]):
-    """One ring, one polygon."""
+    """A ring of particles, with the area in it, if that is kept."""
 
     model = RingDef
     plural = "rings"
@@ -42,7 +42,7 @@ class Ring(Expansion[RingDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """As many particles as springs."""
+        """Number of particles and of springs: equal."""
         return self.body.segments, self.body.segments
 
     @cached_property
@@ -54,7 +54,7 @@ class Ring(Expansion[RingDef]):
         return NO_POLYGONS if self.body.inflation is None else np.arange(self.body.segments, dtype=np.int64)[None]
 
     def hull(self) -> Pairs:
-        """All of its springs. Without an area to keep water would press it flat, and flows through it."""
+        """All of the ring's springs. Without an area to keep, water would press it flat, and flows through it."""
         body = self.body
         return NO_HULL if body.inflation is None else round_hull(0, body.segments)
 
@@ -65,9 +65,9 @@ class Ring(Expansion[RingDef]):
 
     @property
     def bending(self) -> BendingDef | None:
-        """Whether it is stiff."""
+        """Stiffness of bending, if the ring has any."""
         return self.body.bending
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether it stays inside the world."""
+        """Faults where the ring does not stay inside the world's bounds."""
         return round_outline_faults(path, self.body.type, self.body.position, self.body.radius)

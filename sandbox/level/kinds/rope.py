@@ -39,7 +39,7 @@ class Rope(Expansion[RopeDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """One particle more than springs."""
+        """Number of particles and of springs: one particle more."""
         return self.body.segments + 1, self.body.segments
 
     @cached_property
@@ -48,7 +48,7 @@ class Rope(Expansion[RopeDef]):
 
     @property
     def named_particles(self) -> dict[str, int]:
-        """Both ends."""
+        """The particles at both ends, by name."""
         return {"start": 0, "end": self.body.segments}
 
     def named_pins(self) -> list[int]:
@@ -72,5 +72,5 @@ class Rope(Expansion[RopeDef]):
 
     @property
     def bending(self) -> BendingDef | None:
-        """Whether it is stiff."""
+        """Stiffness of bending, if the rope has any."""
         return self.body.bending

@@ -66,5 +66,5 @@ class Web(Expansion[WebDef]):
         return list(range(count - self.body.spokes, count)) if self.body.pin else []
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether it stays inside the world."""
+        """Faults where the web does not stay inside the world's bounds."""
         return round_outline_faults(path, self.body.type, self.body.position, self.body.radius)

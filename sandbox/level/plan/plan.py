@@ -128,7 +128,7 @@ class Plan:
 
     @cached_property
     def first_of_weld(self) -> Slots:
-        """The first particle (n,) that each particle is welded to; itself without a weld."""
+        """For each particle (n,) the first of those it is welded to; itself without a weld."""
         slot = self.layout.slot
         return united(self.layout.particle_count, ((slot(a), slot(b)) for a, b in self._welds))
 

@@ -118,7 +118,7 @@ def words_of(kind: str) -> tuple[str, str]:
 
 
 def left_of(hands: PlayerLimits | None, count: int) -> list[tuple[int, str, int]]:
-    """Of each budget the row among so many counters, its name for players, and how many there are at the start."""
+    """Of each budget the counter's row behind `count` others, its name for players, and its amount at the start."""
     if hands is None:
         return []
     return [(hands.row(deed, count), MEANINGS[deed].remaining_words, most) for deed, most in hands.budgets.items()]

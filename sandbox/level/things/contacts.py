@@ -37,7 +37,7 @@ class Contact:
 
     @property
     def pair(self) -> Pair:
-        """Both ids."""
+        """The ids of both things."""
         return self.a, self.b
 
 
@@ -138,7 +138,7 @@ class _Pushing:
 
     @classmethod
     def of(cls, world: LevelWorld) -> "_Pushing":
-        """Those of a world; without those of things that are gone."""
+        """Pushing contacts of a world; without those of things that are gone."""
         pushes = (world.contact_impulse[:, 0] > 0.0) | (world.contact_impact > 0.0)
         kept = np.flatnonzero(pushes & (world.contact_particle < world.particle_count))
         none = np.zeros(0, np.int64)
@@ -165,7 +165,7 @@ class _Pushing:
         return self.names[low], self.names[high]
 
     def only(self, pairs: set[Pair]) -> "_Pushing":
-        """Those of these pairs alone."""
+        """The contacts of these pairs alone."""
         chosen = np.flatnonzero([self._pair(key) in pairs for key in self.keys.tolist()])
         return _Pushing(self.names, self.kept[chosen], self.of_particle[chosen], self.touched[chosen])
 
@@ -183,7 +183,7 @@ class _Features:
 
     @classmethod
     def of(cls, world: LevelWorld) -> "_Features":
-        """Those of a world as it is now."""
+        """The things of a world as it is now."""
         things = ThingNames.of(world)
         parts = {DISC: things.of_particle, TERRAIN: things.of_terrain}
         found = [parts.get(kind, things.of_spring) for kind in range(KINDS)]

@@ -27,7 +27,7 @@ class ThingNames:
 
     @classmethod
     def of(cls, world: LevelWorld) -> "ThingNames":
-        """Those of a world as it is now; kept until something joins it, leaves it or breaks."""
+        """Names of a world as it is now; kept until something joins it, leaves it or breaks."""
         return world.derived(_named, of_hands=False)
 
 

@@ -135,7 +135,7 @@ class MotorReading(NamedTuple):
 
     @property
     def at_limit(self) -> bool:
-        """Whether it gives all that it has: more load, and it falls behind its speed or stalls."""
+        """Whether the motor gives its largest torque: with more load it falls behind its speed or stalls."""
         return self.share >= MOTOR_AT_LIMIT
 
 
@@ -171,7 +171,7 @@ class Pull:
 
     @property
     def at_limit(self) -> bool:
-        """Whether it pulls as hard as it can."""
+        """Whether the grab pulls as hard as it can."""
         return self.force >= HAND_AT_LIMIT * self.limit
 
 

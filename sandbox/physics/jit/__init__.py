@@ -102,7 +102,7 @@ def kernel_of(held: Any) -> Kernel | None:
 
 
 def _modules(*homes: str) -> list[ModuleType]:
-    """Those of this package that are imported, or being imported, and others by name."""
+    """Modules of this package that are imported, or being imported, and others by name."""
     package = __name__.partition(".")[0]
     names = [name for name in list(sys.modules) if name.startswith(package) and name.partition(".")[0] == package]
     return [one for one in map(sys.modules.get, {*names, *homes}) if type(one) is ModuleType]

@@ -25,7 +25,7 @@ _SILENT = {"type_comment", "type_params", "ctx", "kind"}
 
 
 class NoLibrary(Exception):
-    """There is none here that can be used; says in one line why."""
+    """No library is usable here; says in one line why."""
 
 
 def source_files() -> Iterator[tuple[str, Path]]:

@@ -94,7 +94,7 @@ def check_rows(argument: str, rows: Any, count: int) -> None:
 
 
 def check_materials(material: NDArray[np.integer], count: int) -> None:
-    """Whether there are these materials; -1: of none."""
+    """Refuse materials that a world does not have; -1 stands for none. Raises IndexError."""
     if material.size and not -1 <= material.min() <= material.max() < count:
         raise no_slot("material", int(material.max()), "materials", count)
 

@@ -68,7 +68,7 @@ class BlockOwner:
 
     @property
     def arrays(self) -> WorldBlock:
-        """All that is in it, as arrays of numpy."""
+        """The block's contents as numpy arrays."""
         if self._arrays is None:
             self._arrays = items_of(self.pointer)
         return self._arrays

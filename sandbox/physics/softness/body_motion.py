@@ -90,7 +90,7 @@ class BodyMotion:
 
     @classmethod
     def of(cls, shape: StiffForm, settings: WorldSettings, lowest_mode: float | None = None) -> "BodyMotion":
-        """That of a form; lowest_mode: where it is known."""
+        """Motion of a body of a form; lowest_mode: where it is known."""
         mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
         height, gravity = height_of(shape, *settings.gravity), design_gravity(*settings.gravity)
         substeps = settings.fewest_substeps
@@ -223,7 +223,7 @@ def word_edges() -> tuple[list[str], list[float]]:
 
 
 def motion_of(stiffness: float, damping: float, h: float) -> SpringMotion:
-    """That of one spring of Cs and Cd in steps of h [s].
+    """Motion of a single spring of Cs and Cd in steps of h [s].
 
     Its error x follows  x'' = (2 - Cs - Cd) x' - (1 - Cd) x  from step to step.
     """

@@ -67,7 +67,7 @@ class FirmnessRange:
 
     @classmethod
     def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "FirmnessRange":
-        """That of a form."""
+        """The firmness that a form can have."""
         return cls(lowest_mode_of(shape), height_of(shape, *gravity), design_gravity(*gravity), 1.0 / tick_rate)
 
     def coefficients(self, firmness: Firmness) -> tuple[float, float]:

@@ -102,11 +102,11 @@ class SagMeter:
         return self.sag_known(pair)
 
     def sag_known(self, pair: Pair) -> float | None:
-        """The same, without asking for it."""
+        """The sag of a pair if it is known already; nothing is measured for it."""
         return self._sags.get(pair, self._given_up.get(pair))
 
     def firmness(self, sag: float) -> tuple[bool, Firmness | None]:
-        """Whether it is known what makes the body sag so far, and that, or the nearest; None: none was measured."""
+        """Whether the search for Cs and Cd at which the body sags so far has ended, and what it found; None: nothing."""
         if sag not in self._found:
             self._ask(sag, self._search(sag))
         return sag in self._found, self._found.get(sag)
@@ -123,7 +123,7 @@ class SagMeter:
 
     @property
     def is_busy(self) -> bool:
-        """Whether there is work to go on with."""
+        """Whether there is something left to measure."""
         return bool(self._jobs)
 
     # Work.
@@ -357,7 +357,7 @@ class SagMeters:
 
     @property
     def busy(self) -> list[SagMeter]:
-        """Those that have work to go on with."""
+        """The meters with something left to measure."""
         return [meter for meter in self._meters.values() if meter.is_busy]
 
     def advance(self, seconds: float) -> bool:

@@ -336,7 +336,7 @@ class ComparedRun:
 
     @property
     def is_old(self) -> bool:
-        """Whether it is a recording of another physics version, which cannot be run here as it was."""
+        """Whether the recording is of another physics version, which cannot be run here as it was."""
         return self.replay is not None and not self.replay.is_of_this_physics
 
     def begin(self, other: "ComparedRun") -> Session:
@@ -370,7 +370,7 @@ class RunDifference:
         return not (self.level or self.commands or self.divergence is not None or is_elsewhere)
 
     def lines(self) -> list[str]:
-        """All that differs, a line each."""
+        """All differences, a line each."""
         known = [*self.level, *self.commands]
         distance = self.distance.lines_of_all() if self.distance is not None else []
         if self.versions:

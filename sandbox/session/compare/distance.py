@@ -73,14 +73,14 @@ class TrajectoryDistance:
         return f"{most}; {metres(self.end)} at the end, tick {self.last}"
 
     def lines_of_all(self) -> list[str]:
-        """All of it, a line each."""
+        """All distances, a line each."""
         alone = f"{self.alone} particle{'s are' if self.alone > 1 else ' is'} in one of the runs alone"
         return [
             str(self), *([alone] if self.alone else []), *self.lines, *([self.stopped] if self.stopped else [])
         ]  # fmt: skip
 
     def verdict(self) -> str:
-        """Whether it heals or grows, with the distance at some ticks on the way."""
+        """Whether the distance shrinks or grows, with its value at some ticks on the way."""
         if self.first is None:
             return "no particle is elsewhere at any tick"
         way = ", ".join(f"{metres(distance)} at tick {tick}" for tick, distance in self.course)

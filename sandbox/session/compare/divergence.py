@@ -50,7 +50,7 @@ class Divergence:
 
     @property
     def _elsewhere(self) -> str:
-        """At which tick, if not that of the difference, index and values were seen."""
+        """The tick at which index and values were seen, if not that of the difference."""
         return f"at the next stored state, tick {self.seen}: "
 
     @property

@@ -274,7 +274,7 @@ def command_marks(replay: Replay | None) -> list[tuple[int, str]]:
 
 
 def watches_of(runs: Sequence[Session]) -> list[TouchWatch]:
-    """One for each run."""
+    """A watch of touches for each run."""
     return [TouchWatch(run.level.zones) for run in runs]
 
 

@@ -210,7 +210,7 @@ class _Hands:
             self.gestures[record["grab"]] = gesture
 
     def place(self, hand: int) -> tuple[int, int]:
-        """Where it moved to last."""
+        """Where the hand moved to last."""
         return self.places.get(hand, (0, 0))
 
 

@@ -66,12 +66,12 @@ class TickHashes:
 
     @classmethod
     def of(cls, world: World) -> "TickHashes":
-        """All digits of a world's."""
+        """All hexadecimal digits of the hashes of a world."""
         by_array = hash_by_array(world)
         return cls(state_hash(world, by_array), tuple(by_array.get(name, "") for name in BY_STORED))
 
     def agrees(self, other: "TickHashes") -> bool:
-        """Whether they may be of one state, by the digits that both have."""
+        """Whether both may be of one state, by the digits that both have."""
         return self.whole[: len(other.whole)] == other.whole[: len(self.whole)]
 
     def unlike(self, other: "TickHashes") -> list[str]:
@@ -127,7 +127,7 @@ class Replay:
 
     @property
     def is_of_this_physics(self) -> bool:
-        """Whether this program steps as the one that recorded it."""
+        """Whether the recording was made by the physics version of this program."""
         return self.physics_version == PHYSICS_VERSION
 
     @property

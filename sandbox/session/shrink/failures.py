@@ -49,7 +49,7 @@ class FailureWatch:
         return None
 
     def keep(self) -> Any:
-        """All that it remembers of the run until now, for a watch of another run that goes on from the same state."""
+        """What the watch knows of the run until now, for one of another run that goes on from the same state."""
         return None
 
 
@@ -335,7 +335,7 @@ def usual_failures(level: Level) -> tuple[Failure, ...]:
 
 @dataclass(frozen=True)
 class AnyOf(Failure):
-    """The first of several failures that comes."""
+    """Whichever of several failures comes first."""
 
     failures: tuple[Failure, ...]
 

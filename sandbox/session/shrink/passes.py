@@ -44,7 +44,7 @@ class Play:
 
     @cached_property
     def key(self) -> str:
-        """The same for two plays in which the same is done."""
+        """Key that two plays share in which the same is done."""
         lines = [[line.tick, line.gesture, line.record] for line in self.lines]
         return json.dumps([self.ticks, lines], sort_keys=True)
 
@@ -62,19 +62,19 @@ class Play:
 
     @property
     def is_about_commands(self) -> bool:
-        """Whether it undoes or redoes anything."""
+        """Whether the play undoes or redoes anything."""
         return any(line.record.get("type") in _ABOUT_COMMANDS for line in self.lines)
 
     def without_gestures(self, gestures: Collection[int]) -> "Play":
-        """The same without some gestures."""
+        """The play without some gestures."""
         return replace(self, lines=tuple(line for line in self.lines if line.gesture not in gestures))
 
     def without_lines(self, places: Collection[int]) -> "Play":
-        """The same without some commands, by their places."""
+        """The play without some commands, by their places."""
         return replace(self, lines=tuple(line for place, line in enumerate(self.lines) if place not in places))
 
     def without_ticks(self, first: int, count: int) -> "Play":
-        """The same without some ticks: what is done in them is done at the first, what follows that much earlier."""
+        """The play without some ticks: their commands move to the first of them, later ones come that much earlier."""
 
         def moved(tick: int) -> int:
             return tick if tick < first else max(first, tick - count)
@@ -82,18 +82,18 @@ class Play:
         return self.at_ticks({line.tick: moved(line.tick) for line in self.lines}, self.ticks - count)
 
     def at_ticks(self, ticks: Mapping[int, int], end: int | None = None) -> "Play":
-        """The same at other ticks, in the same order; end: how many ticks the run has then."""
+        """The play at other ticks, in the same order; end: how many ticks the run has then."""
         lines = tuple(replace(line, tick=ticks.get(line.tick, line.tick)) for line in self.lines)
         return Play(tuple(sorted(lines, key=lambda line: line.tick)), self.ticks if end is None else end)
 
     def with_record(self, place: int, record: dict[str, Any]) -> "Play":
-        """The same with another command at a place."""
+        """The play with another command at a place."""
         return replace(
             self, lines=(*self.lines[:place], replace(self.lines[place], record=record), *self.lines[place + 1 :])
         )
 
     def parting(self, other: "Play") -> int | None:
-        """The first tick before which something else is done in another; None: all of the shorter is in both."""
+        """The first tick before which two plays differ; None: all of the shorter is in both."""
         for ours, theirs in zip(self.lines, other.lines, strict=False):
             if (ours.tick, ours.gesture, ours.record) != (theirs.tick, theirs.gesture, theirs.record):
                 return min(ours.tick, theirs.tick)
@@ -121,7 +121,7 @@ def _whole(value: Any) -> Any:
 
 
 def counted(count: int, noun: str) -> str:
-    """So many of something."""
+    """A count with its noun."""
     return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
@@ -139,7 +139,7 @@ def last_gestures(play: Play) -> Generator[Iterable[Play], Answer, None]:
 
 
 def history(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without what was undone in the end and all undoing; then without each undo and the gesture that it took back."""
+    """Try to leave out what was undone in the end and all undoing; then each undo with the gesture that it undid."""
     about = {line.gesture for line in play.lines if line.record.get("type") in (Undo.type, Redo.type)}
     if not about:
         return
@@ -173,12 +173,12 @@ def _pairs(play: Play) -> Iterator[set[int]]:
 
 
 def gestures_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without some gestures: a grab with its moves and its release is one."""
+    """Try to leave out gestures: a grab with its moves and its release is one."""
     yield from _taken_out(play, lambda play: play.gestures, lambda play, gestures: play.without_gestures(gestures))
 
 
 def commands_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without some commands: moves of a hand become fewer, and what was held is held to the end."""
+    """Try to leave out commands: moves of a hand become fewer, and what was held is held to the end."""
     yield from _taken_out(play, lambda play: range(len(play.lines)), lambda play, places: play.without_lines(places))
 
 
@@ -187,7 +187,7 @@ def _taken_out(
     parts_of: Callable[[Play], Sequence[int]],
     without: Callable[[Play, Collection[int]], Play],
 ) -> Generator[Iterable[Play], Answer, None]:
-    """Without pieces of so many parts, half as many each time, from the end to the beginning."""
+    """Try to leave out parts, `size` at a time from the end to the beginning; size is halved down to 1."""
     size = max(1, len(parts_of(play)))
     while True:
         end = len(parts_of(play))
@@ -204,7 +204,7 @@ def _taken_out(
 
 
 def moves_joined(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without moves of a hand: it is from the command before where the move brings it."""
+    """Try to leave out moves of a hand: the command before takes it there."""
     place = len(play.lines) - 1
     while place > 0:
         answer = yield [joined for joined in [_joined(play, place)] if joined is not None]
@@ -223,12 +223,12 @@ def _joined(play: Play, place: int) -> Play | None:
 
 
 def long_idle_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without long times in which nothing is done, or with less of them: all else is tried in shorter runs then."""
+    """Try to shorten long times without commands: all other plays are shorter then."""
     yield from _idle_out(play, LONG_IDLE)
 
 
 def idle_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without any time in which nothing is done, or with less of it."""
+    """Try to shorten every time without commands."""
     yield from _idle_out(play, 1)
 
 
@@ -256,7 +256,7 @@ def _idle_out(play: Play, least: int) -> Generator[Iterable[Play], Answer, None]
 
 
 def ticks_round(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """With rounder times: of all commands, then of each tick in which there are any."""
+    """Try rounder ticks: for all commands, then for each tick that has any."""
     answer = yield [play.at_ticks({line.tick: _floor(line.tick, to) for line in play.lines}) for to in ROUND_TICKS]
     if answer is not None:
         play = answer[1]
@@ -275,7 +275,7 @@ def _floor(tick: int, to: int) -> int:
 
 
 def numbers_round(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """With rounder numbers: first all of them, then each."""
+    """Try rounder numbers: first all of them, then each."""
     answer = yield [_longer(_all_rounded(play, level)) for level in range(len(DECIMALS))]
     play = play if answer is None else answer[1]
     place = 0
@@ -293,7 +293,7 @@ def numbers_round(play: Play) -> Generator[Iterable[Play], Answer, None]:
 
 
 def fields_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without what may be left out of commands, and without some of the names in their lists."""
+    """Try to leave out optional fields of commands, and some of the names in their lists."""
     for place in reversed(range(len(play.lines))):
         for name in _optional(play.lines[place].record) if place < len(play.lines) else ():
             record = play.lines[place].record
@@ -327,12 +327,12 @@ def _names_out(play: Play, place: int) -> Generator[Iterable[Play], Answer, Play
 
 
 def _longer(play: Play) -> Play:
-    """The same in a run that may last a little longer."""
+    """The play in a run that may last a little longer."""
     return play.at_ticks({}, play.ticks + int(LONGER_PART * play.ticks) + LONGER_TICKS)
 
 
 def _all_rounded(play: Play, level: int) -> Play:
-    """All numbers in one of the roundings, by its place."""
+    """The play with every number rounded as the entry `level` of its roundings says."""
     for place, line in enumerate(play.lines):
         record = line.record
         for path in _numbers(record):

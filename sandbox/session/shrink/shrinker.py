@@ -155,7 +155,7 @@ class Shrinker:
     def _repeated(
         self, passes: Iterable[Pass], workers: ProcessPoolExecutor | None, work: bytes, processes: int
     ) -> Iterator[None]:
-        """All of some passes, until none of them finds anything."""
+        """Make passes over and over until none of them finds a smaller play."""
         while True:
             before = self.smallest.size
             for each in passes:

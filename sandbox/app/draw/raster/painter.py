@@ -85,7 +85,7 @@ class MarkList:
         self.rows(np.concatenate([at, turn], axis=1), radius, colour, 1.0, style, mark)
 
     def arrays(self) -> MarkArrays | None:
-        """All of them, None where there are none."""
+        """The marks as arrays for the kernels, None where there are none."""
         if not self._rows:
             return None
         count, last = sum(len(row[0]) for row in self._rows), 0

@@ -140,7 +140,7 @@ class BodyEnds:
 
     @classmethod
     def of(cls, document: Document, camera: Camera, scale: float) -> "BodyEnds | None":
-        """Those of the body that alone is selected; None where it has no ends, or its form is kept as a pose."""
+        """Handles at the ends of the one selected body; None where it has no ends, or its form is kept as a pose."""
         selection = document.selection
         only = next(iter(selection)) if len(selection) == 1 else None
         if only is None or only.kind != "body":

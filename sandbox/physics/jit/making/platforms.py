@@ -27,7 +27,7 @@ class Platform:
 
     @property
     def is_web(self) -> bool:
-        """Whether it is a module for pages, not a library that Python opens."""
+        """Whether the library is a WebAssembly module for pages, not one that Python opens."""
         return self.suffix == "wasm"
 
 

@@ -44,7 +44,7 @@ class Array:
 
     @property
     def cpp(self) -> str:
-        """As C++ writes it."""
+        """The array's type in C++."""
         return f"Array<{ITEMS[self.dtype]}, {self.dimensions}>"
 
     @property
@@ -74,7 +74,7 @@ class Several:
 
     @property
     def cpp(self) -> str:
-        """As C++ writes it."""
+        """The tuple's type in C++."""
         return f"Tuple{len(self.items)}<{', '.join(item.cpp for item in self.items)}>"
 
 
@@ -86,7 +86,7 @@ class BundleType:
 
     @property
     def cpp(self) -> str:
-        """As C++ writes it."""
+        """The bundle's type in C++."""
         return f"Bundle<{self.items.cpp}>"
 
 

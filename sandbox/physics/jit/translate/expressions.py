@@ -74,7 +74,7 @@ class Code:
     stays: bool = False
 
     def within(self, hangs: int) -> str:
-        """As a part of an expression whose parts hang together so closely."""
+        """The code inside a larger expression: in parentheses where its operator binds less closely than `hangs`."""
         return self.text if self.hangs >= hangs else f"({self.text})"
 
 
