@@ -132,7 +132,7 @@ def missing_folder() -> str | None:
 
 
 def refusal_of(error: OSError) -> str:
-    """What the system refuses, in one line."""
+    """The line of an error that the system raised."""
     # An error without a file's name is of no file: memory, processes, or whatever else the system runs out of.
     return f"{error.filename or 'the system refuses'}: {error.strerror or error}"
 
@@ -154,7 +154,7 @@ def tell(lines: Iterable[str]) -> None:
 
 
 def cores() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -178,7 +178,7 @@ class Progress:
             self._bar.close()
 
     def update(self, count: int = 1) -> None:
-        """Something has happened, this many units of it."""
+        """Note that this many units are done."""
         self.done += count
         if self._bar is not None:
             self._bar.update(count)
@@ -190,7 +190,7 @@ class Progress:
 
     @contextmanager
     def aside(self) -> Iterator[None]:
-        """Print other lines in here, which the bar makes room for."""
+        """Print other lines in this context, above the bar."""
         if self._bar is None:
             yield
             return

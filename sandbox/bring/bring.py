@@ -34,14 +34,14 @@ MARK = b"\xef\xbb\xbf"
 
 @dataclass(frozen=True)
 class Brought:
-    """A level, and what did not come in: "3 text elements"."""
+    """A brought level, with what was left out: "3 text elements"."""
 
     level: Level
     left_out: list[str]
 
     @property
     def came(self) -> str:
-        """What came in: "2 jellies and 1 piece of ground came in"."""
+        """The line of what was brought: "2 jellies and 1 piece of ground came in"."""
         level = self.level
         parts = ((len(level.bodies), "jelly", "jellies"), (len(level.terrain), "piece of ground", "pieces of ground"))
         came = " and ".join(f"{count:,} {one if count == 1 else many}" for count, one, many in parts if count)

@@ -402,7 +402,7 @@ def _check_meetings(rings: Sequence[Ring]) -> None:
 
 
 def _filled(rings: Sequence[Ring], rule: Rule) -> Any:
-    """What rings fill by a rule."""
+    """The region that rings fill by a fill rule."""
     import shapely
 
     if not rings:

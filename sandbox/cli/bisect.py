@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class BisectOptions:
-    """Where to look, and what is to hold."""
+    """Options of `bisect`: what to search between, and the check or recording that tells."""
 
     level: str = argument(str, "LEVEL", "one that holds")
     bad: str | None = optional_argument(str, "BAD", "another that fails: which of its edits make it so?")

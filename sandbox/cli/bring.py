@@ -25,7 +25,7 @@ def _width(text: str) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class BringOptions:
-    """Which file, what becomes of it, and where it goes."""
+    """Options of `bring`: the file, how to read it, and where the level goes."""
 
     file: Path = argument(Path, "FILE", "an SVG, a PNG with transparency, a Tiled map or a R.U.B.E. scene as JSON")
     output: Path = needed_option(Path, "-o", metavar="LEVEL.json")

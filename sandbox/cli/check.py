@@ -15,7 +15,7 @@ LEVELS_PER_PROCESS = 4
 
 @dataclass(frozen=True, kw_only=True)
 class CheckOptions:
-    """What to check, and how to tell it."""
+    """Options of `check`: levels, and the form of the report."""
 
     levels: list[str] = arguments(str, "LEVEL")
     json: bool = flag("print one JSON object a level")

@@ -20,7 +20,7 @@ PICTURE = ".png"
 
 @dataclass(frozen=True, kw_only=True)
 class DiffOptions:
-    """What to compare, for how long, and how to tell it."""
+    """Options of `diff`: the two runs, for how long, and the form of the report."""
 
     first: str = argument(str, "A", "a recording or a level")
     second: str = argument(str, "B", "another; a level runs with the commands of the recording")

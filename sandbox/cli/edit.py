@@ -8,7 +8,7 @@ from sandbox.cli.base.inputs import Refused
 
 @dataclass(frozen=True, kw_only=True)
 class EditOptions(WindowOptions):
-    """What to edit, and how it looks."""
+    """Options of `edit`: the level, and the window's."""
 
     level: str | None = optional_argument(str, "LEVEL")
 

@@ -10,7 +10,7 @@ from sandbox.cli.base.running import PAGE
 
 @dataclass(frozen=True, kw_only=True)
 class PageOptions:
-    """What plays, and where it goes."""
+    """Options of `page`: the level or recording, and where the page goes."""
 
     level: str = argument(str, "LEVEL|REPLAY")
     output: Path = needed_option(Path, "-o", metavar="OUT.html")

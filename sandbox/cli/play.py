@@ -19,7 +19,7 @@ HEADLESS_SECONDS = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class PlayOptions(WindowOptions):
-    """What to open, and how."""
+    """Options of `play`: the file to open, and the window's."""
 
     level: str | None = optional_argument(str, "LEVEL", "a level file, a shipped level's name, or a replay file")
     profile: bool = flag("print where a frame's time goes, at the end")

@@ -19,7 +19,7 @@ FILM_SECONDS, FILM_SIZE, PNG_SIZE = 6.0, (640, 360), (1280, 720)
 
 @dataclass(frozen=True, kw_only=True)
 class RenderOptions:
-    """What to draw, of which time, how large, and where to."""
+    """Options of `render`: the run, the time, the size, and the file."""
 
     level: str = argument(str, "LEVEL|REPLAY")
     start: float | None = option(seconds, "--from", help="simulated time before a GIF or MP4; default 0")

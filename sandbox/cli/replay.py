@@ -29,7 +29,7 @@ FILES_PER_PROCESS = 8
 
 @dataclass(frozen=True, kw_only=True)
 class ReplayOptions:
-    """Which recordings to verify, on what, and how to tell it."""
+    """Options of `replay`: recordings to verify, on what, and the form of the report."""
 
     files: list[str] = arguments(str, "FILE|FOLDER")
     json: bool = flag("print one JSON object a file")

@@ -9,7 +9,7 @@ from sandbox.terminal import Progress, interrupted_between_ticks
 
 @dataclass(frozen=True, kw_only=True)
 class ResumeOptions:
-    """Which recording, and how long it is to be."""
+    """Options of `resume`: the recording, and its new length."""
 
     file: str = argument(str, "FILE")
     seconds: float | None = length_in_seconds(" in all; default: up to where it was cut off")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions:
-    """What to run, for how long, and what to write of it."""
+    """Options of `run`: the level, for how long, and the files to write."""
 
     level: str = argument(str, "LEVEL")
     seconds: float | None = length_in_seconds("; default 10")

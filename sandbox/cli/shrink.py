@@ -161,7 +161,7 @@ def _nothing(name: str, replay: "Replay", failure: "Failure", level: "Level") ->
 
 
 def _work(shrinker: "Shrinker", options: ShrinkOptions) -> bool:
-    """Make it as small as it gets; whether that was interrupted."""
+    """Shrink the recording as far as it goes; whether that was interrupted."""
     try:
         with Progress(None, " run") as bar, closing(shrinker.steps(options.processes or cores())) as steps:
             reported = None

@@ -10,7 +10,7 @@ from sandbox.terminal import Progress
 
 @dataclass(frozen=True, kw_only=True)
 class SiteOptions:
-    """What the site shows, and where it goes."""
+    """Options of `site`: the levels, and where the site goes."""
 
     levels: list[str] = arguments(str, "LEVEL", "default: all that are shipped", at_least=0)
     output: Path = needed_option(Path, "-o", metavar="FOLDER")

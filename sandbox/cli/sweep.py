@@ -23,7 +23,7 @@ TABLE, MAP = ".csv", ".png"
 
 @dataclass(frozen=True, kw_only=True)
 class SweepOptions:
-    """The grid, how it is run, and where its results go."""
+    """Options of `sweep`: the grid, how to run it, and where results go."""
 
     level: str = argument(str, "LEVEL")
     cs: str | None = option(str, metavar="A:B:N[:log]", help="Cs: N values from A to B, or a,b,..")

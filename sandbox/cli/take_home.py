@@ -8,7 +8,7 @@ from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
 
 @dataclass(frozen=True, kw_only=True)
 class TakeHomeOptions:
-    """Which body, and for what."""
+    """Options of `take-home`: the body, and the engine."""
 
     level: str = argument(str, "LEVEL")
     body: str | None = option(str, metavar="ID", help="which body; default: the first that has springs")
@@ -22,7 +22,7 @@ class TakeHomeOptions:
 
 
 def take_home(options: TakeHomeOptions) -> int:
-    """Print what a body takes home. Raises Refused."""
+    """Print a body's numbers for another engine. Raises Refused."""
     from sandbox.export.engines import NoSuchBody
     from sandbox.export.take_home import TARGETS, take_home_text
     from sandbox.level.format.level_error import shown, suggestion

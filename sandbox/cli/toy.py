@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class ToyOptions(LookOptions):
-    """What to play, and how it looks."""
+    """Options of `toy`: the level, and the window's."""
 
     level: str | None = optional_argument(str, "LEVEL", "a level file or a shipped level's name")
     record: Path | None = option(Path, metavar="FILE", help="write a replay; .gz compresses")

@@ -69,7 +69,7 @@ def new_level() -> Level:
 
 
 def select(document: Document, selection: Selection) -> Document:
-    """Select those of the items that the level has."""
+    """Select items, as far as the level has them."""
     level = document.level
     known: dict[Kind, Sequence[str | int]] = {
         kind: range(len(level.springs)) if kind == "spring" else [part.id for part in getattr(level, parts)]

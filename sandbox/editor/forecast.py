@@ -192,7 +192,7 @@ class Firing:
 
 
 def deeds_of(run: Session) -> tuple[Deeds, int]:
-    """What was done in a run and counts, and its last tick."""
+    """The commands that count in a run, and its last tick."""
     entries = [entry for entry in run.history.timeline if entry.in_effect and not entry.implied]
     return [(entry.tick, entry.gesture, entry.command) for entry in entries], run.last_tick
 

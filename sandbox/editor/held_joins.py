@@ -56,7 +56,7 @@ class Held:
 
 
 def with_joins_held(before: Level, document: Document) -> Held:
-    """What an edit of a level led to, with its joins made to hold."""
+    """The document after an edit, with its joins made to hold."""
     level = document.level
     if not level.welds or level is before or (level.bodies, level.particles) == (before.bodies, before.particles):
         return Held(document)
@@ -197,7 +197,7 @@ class _Holding:
         return bx - ax, by - ay
 
     def _is_alone(self, old_name: str, end: End) -> bool:
-        """Whether the other end of the body is where it was."""
+        """Whether the body's other end has not moved."""
         owner, field = end
         other = ENDS[1 - ENDS.index(field)]
         before, now = self._was[owner_of(old_name)].__dict__.get(other), self._is[owner].__dict__[other]

@@ -42,12 +42,12 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a step to take back."""
+        """Whether a step can be undone."""
         return self.index > 0
 
     @property
     def can_redo(self) -> bool:
-        """Whether there is a step that was taken back."""
+        """Whether an undone step can be made again."""
         return self.index + 1 < len(self._steps)
 
     def apply(self, label: str, document: Document, merge: str | None = None) -> None:

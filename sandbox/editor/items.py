@@ -39,7 +39,7 @@ def items_of(level: Level) -> tuple[Item, ...]:
 
 
 def definitions(level: Level) -> tuple[Definition, ...]:
-    """What a level says of every item, in the order of `items_of`."""
+    """The definition of every item, in the order of `items_of`."""
     return (*level.bodies, *level.particles, *level.springs, *level.terrain, *level.zones)
 
 
@@ -110,7 +110,7 @@ def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
 
 
 def chosen_items(level: Level, selection: Selection) -> dict[Item, Definition]:
-    """The selected items with their definitions, in that order."""
+    """The selected items with their definitions, in the order of `items_of`."""
     found: dict[Item, Definition] = {Item("body", body.id): body for body in chosen_bodies(level, selection)}
     found |= {Item("particle", particle.id): particle for particle in chosen_particles(level, selection)}
     springs = keys(selection, "spring")
@@ -191,7 +191,7 @@ class Visibility:
 
     @property
     def closed(self) -> Selection:
-        """What a pointer does not pick."""
+        """Items that a pointer does not pick: hidden and locked ones."""
         return self.hidden | self.locked if self.locked else self.hidden
 
     def hide(self, items: Selection, on: bool) -> "Visibility":
@@ -199,7 +199,7 @@ class Visibility:
         return Visibility(self.hidden | items if on else self.hidden - items, self.locked)
 
     def lock(self, items: Selection, on: bool) -> "Visibility":
-        """Lock items, or open them again."""
+        """Lock items, or unlock them."""
         return Visibility(self.hidden, self.locked | items if on else self.locked - items)
 
     def renamed(self, old: Item, new: Item) -> "Visibility":
@@ -207,7 +207,7 @@ class Visibility:
         return Visibility(_renamed(self.hidden, old, new), _renamed(self.locked, old, new))
 
     def among(self, items: Selection) -> "Visibility":
-        """The part of it that is about some items."""
+        """The same for some items alone."""
         return Visibility(self.hidden & items, self.locked & items)
 
 

@@ -14,7 +14,7 @@ def rule_text(rule: RuleDef) -> str:
 
 
 def question_text(question: QuestionDef) -> str:
-    """What a question asks, without a full stop."""
+    """A question of a rule in words, without a full stop."""
     asks = question.asked[0]
     value = getattr(question, asks)
     match asks:
@@ -68,7 +68,7 @@ def _bounds_text(question: QuestionDef) -> str:
 
 
 def action_text(action: ActionDef) -> str:
-    """What an action does, without a full stop."""
+    """An action of a rule in words, without a full stop."""
     does = action.done[0]
     value = getattr(action, does)
     match does:
@@ -98,7 +98,7 @@ def named_things(question: QuestionDef) -> list[str]:
 
 
 def named_zones(question: QuestionDef) -> list[str]:
-    """Zones that a question names, its members too."""
+    """Zones that a question or its members name."""
     own = [name for name in (question.zone, question.crosses) if name]
     return own + [name for each in question.members for name in named_zones(each)]
 

@@ -84,7 +84,7 @@ class Collision(NamedTuple):
     touches: Slots
 
     def meet(self, a: Slots | int, b: Slots | int) -> Mask:
-        """Whether particles touch others, both (k,) or one for all."""
+        """Whether particles collide with others, both (k,) or one for all."""
         return np.asarray((self.touches[a] & self.group[b] != 0) & (self.touches[b] & self.group[a] != 0))
 
 
@@ -126,7 +126,7 @@ def _alike(new: tuple[AnyBody, ...], old: tuple[AnyBody, ...]) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class _Parts:
-    """What the next scene may take over."""
+    """Parts of a scene that the next one may reuse."""
 
     bodies: _Joined
     origin: Floats  # (k, 2) [m] of each body
@@ -172,7 +172,7 @@ class Scene:
 
     @cached_property
     def collision(self) -> Collision:
-        """What touches what."""
+        """Which particles collide with which."""
         surfaces = surfaces_of(self.level, self.parts.bodies.counts)
         return Collision(surfaces["group"], surfaces["collides"])
 
@@ -439,7 +439,7 @@ class SceneActuators(NamedTuple):
 
 
 def scene_actuators(scene: Scene) -> SceneActuators:
-    """Find what is driven in a scene."""
+    """Motors, muscles and hydraulics of a scene."""
     level = scene.level
     found = SceneActuators([], [], [])
     for index, body in enumerate(level.bodies):

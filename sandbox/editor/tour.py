@@ -31,7 +31,7 @@ Target = Point | str
 
 @dataclass(frozen=True)
 class Step:
-    """A step: its text, what it points at, and whether it is done."""
+    """A step of the tour: its text, its target on the screen, and whether it is done."""
 
     title: str
     text: str
@@ -150,7 +150,7 @@ class Tour:
 
     @property
     def step(self) -> Step:
-        """What is to be done now."""
+        """The present step."""
         return STEPS[self.index] if self.index < len(STEPS) else END
 
     @property

@@ -182,7 +182,7 @@ class FlatHydraulic(Description):
 
 
 class FlatMotor(Description):
-    """What turns particles about a hub."""
+    """A motor, which turns particles about a hub."""
 
     hub: int = Field(description="By index.")
     rim: Indices = Field(description="By index.")

@@ -76,7 +76,7 @@ class LoopTrial:
 
 
 def loop_rows(body: ChosenBody) -> tuple[LoopRow, ...]:
-    """What is proven for a body with 1, 2, 4 and 8 substeps."""
+    """Proven limits of a body with 1, 2, 4 and 8 substeps."""
     equal = own = largest_pair(1.0, 1.0, body.n_eff)
     if max(body.stiffness, body.damping) > 0.0:
         own = largest_pair(body.stiffness, body.damping, body.n_eff)
@@ -166,7 +166,7 @@ def listing(trial: LoopTrial, language: str) -> str:
 
 
 def expected(trial: LoopTrial) -> list[str]:
-    """The lines that such a program prints, with all digits."""
+    """The lines that the program prints, with all digits."""
     return [
         " ".join([str(tick), *(exact(value) for point in pair for value in point)])
         for tick, pair in enumerate(trial.places, 1)

@@ -182,7 +182,7 @@ def excess(check: CheckDef, value: float) -> float:
 
 
 def subject_text(check: CheckDef) -> str:
-    """What a check measures: "distance of a to b"."""
+    """The measure of a check in words: "distance of a to b"."""
     owner = check.particle or check.body
     other = f" to {check.other}" if check.other is not None else ""
     return check.metric + (f" of {owner}" if owner is not None else "") + other

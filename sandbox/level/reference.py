@@ -156,7 +156,7 @@ def _link(title: str) -> str:
 
 
 def _inner(field: Field) -> list[Field]:
-    """What a field is made of: its alternatives, its items."""
+    """The type of a field without its wrapping: its alternatives, its items."""
     items = field.get("items")
     return [*field.get("anyOf", ()), *field.get("prefixItems", ())[:1], *([items] if isinstance(items, dict) else [])]
 
@@ -183,7 +183,7 @@ def _limits(field: Field) -> str:
 
 
 def _span(low: float | None, high: float | None, of: str = "") -> str:
-    """Limits in words; of: what is counted, in the plural."""
+    """Limits in words; of: the counted things, in the plural."""
     if high is None:
         return "" if low is None else f"{_number(low)}{of if low != 1 else of[:-1]} or more"
     of = of if high != 1 else of[:-1]

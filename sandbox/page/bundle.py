@@ -75,7 +75,7 @@ def node_path() -> str | None:
 
 
 def digest_of(folder: Path) -> str:
-    """What the modules of a folder are known by, all together."""
+    """Digest of all modules of a folder."""
     found = hashlib.blake2b(digest_size=16)
     for path in sorted(folder.glob("*.js")):
         found.update(f"{path.name}\0{path.read_text(encoding='utf-8')}\0".encode())

@@ -125,7 +125,7 @@ class Image(NamedTuple):
 
 
 class Start(NamedTuple):
-    """The image of a world, and what a page must know of it."""
+    """The image of a world, with all that a page needs to know of it."""
 
     image: Image
     about: dict[str, Any]
@@ -320,7 +320,7 @@ def row_counts(world: World) -> Counts:
 
 
 def growth_of() -> Growth:
-    """What grows of a world's block."""
+    """The fields of a world's block that grow."""
     found: Growth = {}
     for family in _GROWING:
         for column in FAMILIES[family]:

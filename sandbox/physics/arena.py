@@ -39,7 +39,7 @@ MORE = 2
 
 @inner_kernel
 def give_back(arena: Arena, to: int) -> None:
-    """Give back what was laid out since a mark."""
+    """Free what was laid out in an arena since a mark."""
     # What lies beyond is 0 at all times, so that nothing is to be done where an array begins.
     for at in range(to, min(arena[0], arena.shape[0])):
         arena[at] = 0

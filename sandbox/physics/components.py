@@ -101,7 +101,7 @@ def united(label: Slots, first: int, node: int) -> int:
 
 @inner_kernel
 def join(label: Slots, a: int, b: int) -> None:
-    """Make one set of those that two nodes are in."""
+    """Unite the sets that two nodes are in."""
     first, other = root_of(label, a), root_of(label, b)
     if first != other:
         united(label, first, other)

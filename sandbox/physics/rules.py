@@ -227,7 +227,7 @@ def _still_ticks(terms: Terms, t: int, state: State) -> int:
 
 @inner_kernel
 def _motion(terms: Terms, t: int, state: State) -> float:
-    """Kinetic energy [J] of what is free, and of its turning."""
+    """Kinetic energy [J] of free particles, rotation included."""
     total = 0.0
     for at in range(terms.first[t], terms.last[t]):
         p = terms.slot[at]

@@ -67,7 +67,7 @@ class WorldSettings:
 
     @classmethod
     def of(cls, numbers: Sequence[float], choices: Sequence[int]) -> "WorldSettings":
-        """The settings of what kernels read."""
+        """The settings from the arrays of kernels."""
         x, y, wind_x, wind_y, drag, warm_start = numbers
         solver, tick_rate, substeps, is_auto, iterations = choices
         return cls(

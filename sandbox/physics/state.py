@@ -50,7 +50,7 @@ SHARE = Range(0.0, 1.0)
 
 
 class Family(Enum):
-    """Arrays that go together: one row for each of these."""
+    """A family of arrays: one row for each thing of this kind."""
 
     PARTICLE = "particle"
     SPRING = "spring"
@@ -97,7 +97,7 @@ class Column:
 
     @property
     def kind(self) -> Any:
-        """The kind of its array, as kernels are told of it."""
+        """The kind of the column's array, for kernels."""
         return Annotated[NDArray[Any], ArrayKind(self.dtype, 2 if self.width > 1 else 1)]
 
     def empty(self) -> NDArray[Any]:
@@ -105,7 +105,7 @@ class Column:
         return self.usual_rows(0)
 
     def usual_rows(self, count: int) -> NDArray[Any]:
-        """An array of so many rows, which are as usual."""
+        """Rows of the usual value."""
         return np.full((count, self.width) if self.width > 1 else count, self.usual, dtype=self.dtype)
 
 

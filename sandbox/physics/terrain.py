@@ -102,7 +102,7 @@ def make_terrain(chains: Sequence[Chain], tips: bool = True) -> Terrain:
 
 
 def _oriented(chain: Chain) -> Floats:
-    """Corners in the order that leaves what is solid on the left."""
+    """Corners in the order that leaves the solid side on the left."""
     corners = np.array(chain.corners, dtype=np.float64).reshape(-1, 2) + 0.0
     turned = (signed_area(corners, np.roll(corners, -1, axis=0)) < 0.0) == (chain.kind == "solid")
     return np.ascontiguousarray(corners[::-1]) if chain.kind != "line" and turned else corners

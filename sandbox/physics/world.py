@@ -90,7 +90,7 @@ class World(StateArrays):
         object.__setattr__(self, name, value)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a copy starts from: all but what was derived."""
+        """The state that a copy starts from: derived values are left out."""
         return self.__dict__ | {"_derived": {}, "_lasting": {}, "_capacity": Capacity()}
 
     def derived(self, make: Callable[[Self], Derived], of_hands: bool = True) -> Derived:
@@ -128,7 +128,7 @@ class World(StateArrays):
             self.topology_version += 1
 
     def trust(self) -> None:
-        """Take everything as it is now for good."""
+        """Take the present state as the last good one."""
         for column in GUARDED:
             values = getattr(self, column.name)
             good = self.good.get(column.name)
@@ -190,7 +190,7 @@ class World(StateArrays):
 
     @property
     def commanded(self) -> Commanded:
-        """What commands change."""
+        """The arrays that commands change."""
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
         table, areas = self.form_table, areas_of(self)
         return Commanded(
@@ -199,7 +199,7 @@ class World(StateArrays):
 
     @property
     def lent(self) -> Any:
-        """What commands change, as kernels take it."""
+        """The arrays that commands change, as kernels take them."""
         return self.derived(_lend, of_hands=False)
 
     @property
@@ -477,7 +477,7 @@ class World(StateArrays):
             self.hand_version += 1
 
     def pin(self, particle: int) -> None:
-        """Hold a particle where it is."""
+        """Hold a particle at its place."""
         self.command("pin", particle=particle)
 
     def unpin(self, particle: int) -> None:

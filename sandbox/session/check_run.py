@@ -60,7 +60,7 @@ class HeldKeys:
             self._values[tick], held = changed, now
 
     def press(self, session: Session) -> None:
-        """Drive what is due before a session's next tick."""
+        """Press and release the keys that are due before a session's next tick."""
         for part, value in self._values.get(session.tick, {}).items():
             session.submit(SetDrive(part, value))
 
@@ -74,7 +74,7 @@ class CheckRun:
         self._keys = HeldKeys(level, holds)
 
     def advance(self) -> None:
-        """One tick, with the keys that are held."""
+        """Make one tick, with the keys that are held."""
         self._keys.press(self.session)
         self.session.advance()
 
@@ -119,7 +119,7 @@ class CheckWatch:
         return self._gauge.keep(), {number: each.found for number, each in self._waiting.items()}
 
     def go_on(self, kept: Any) -> None:
-        """Go on from what another watch of the same checks has kept."""
+        """Go on from the values that another watch of the same checks has kept."""
         measured, waiting = kept
         self._gauge.go_on(measured)
         self._waiting = {number: each for number, each in self._waiting.items() if number in waiting}
@@ -136,7 +136,7 @@ class _Waiting:
         self.found: tuple[float, float] | None = None
 
     def look(self, tick: int, gauge: "_Gauge") -> CheckResult | None:
-        """Measure, where it is time to; the result once it is known."""
+        """Measure, if the check is due at this tick; its result once it is known."""
         check = self._check
         if tick < self._first:
             return None
@@ -175,13 +175,13 @@ class _Gauge:
         return list(self._strains), dict(self._still), self._started
 
     def go_on(self, kept: Any) -> None:
-        """Follow on from what another gauge has kept."""
+        """Go on from the state that another gauge has kept."""
         strains, still, self._started = kept
         self._strains.extend(strains)
         self._still = dict(still)
 
     def look(self, world: World) -> None:
-        """Follow one tick."""
+        """Take in one tick."""
         if self._follows_strain and world.tick > self._started:
             self._strains.append(strain_sample(world))
         for body, ticks in self._still.items():

@@ -249,7 +249,7 @@ def tick_events_of(run: Session, last: int) -> Iterator[Event]:
 
 
 def _of_rules(level: Level, tick: int, kept: TickEvents) -> Iterator[Event]:
-    """What the rules that fired in a tick do."""
+    """Events of the rules that fired in a tick."""
     values = dict(zip((counter.id for counter in level.counters), kept.counters, strict=False))
     for number in kept.rules:
         rule = level.rules[number]
@@ -457,7 +457,7 @@ def _joined(those: list[Event], gap: int, many: Callable[[str, list[Event]], str
 
 
 def _keys(event: Event) -> tuple[str, ...]:
-    """The names that others may share with it."""
+    """The names in an event that others may share."""
     return event.names if event.kind in _OF_TOUCHES else event.names[:1]
 
 

@@ -196,7 +196,7 @@ def write_golden(path: Path, measured: GoldenFile) -> None:
 
 
 def _text(data: Mapping[str, Any]) -> str:
-    """A thing a line, so that a review sees which one moved."""
+    """JSON with a line for each thing, so that a review sees which one moved."""
     lines = []
     for key, value in data.items():
         if isinstance(value, dict):

@@ -39,7 +39,7 @@ class Edit:
 
 
 def path_text(path: Sequence[str | int]) -> str:
-    """A place as people write it: "bodies.deck.segments"."""
+    """The path of a field as people write it: "bodies.deck.segments"."""
     return ".".join(map(str, path))
 
 

@@ -41,7 +41,7 @@ class Probe:
         self.take(world)
 
     def take(self, world: World) -> None:
-        """Add a line, if one is due at this tick."""
+        """Write a line, if one is due at this tick."""
         if not self._followed or world.tick % self._every:
             return
         readings = {reading.name: reading for reading in motor_readings(world)}

@@ -88,12 +88,12 @@ class Keyframes:
         return self._kept[place - 1].tick < tick and self._kept[place].tick - self._kept[place - 1].tick > self._spacing
 
     def insert(self, keyframe: Keyframe) -> None:
-        """Keep one of a tick that was passed over."""
+        """Keep a state of a tick between others."""
         place = bisect.bisect_right(self._kept, keyframe.tick, key=_tick)
         self._set([*self._kept[:place], _sharing(keyframe, self._kept[place - 1]), *self._kept[place:]])
 
     def keep(self, keyframe: Keyframe) -> None:
-        """Keep one behind all others."""
+        """Keep a state behind all others."""
         self._unkept = 0
         keyframe = _sharing(keyframe, self._kept[-1])
         self._size += _own_size(keyframe, self._kept[-1])
@@ -116,7 +116,7 @@ class Keyframes:
             self.keep(Keyframe(order, take(world), between=True))
 
     def note_return(self) -> None:
-        """The world is as one of them has it."""
+        """Note that the world has gone back to a kept state."""
         self._unkept = 0
 
     def drop_after(self, order: int) -> None:
@@ -124,7 +124,7 @@ class Keyframes:
         self._drop([kept for kept in self._kept if kept.order <= order])
 
     def drop_beyond(self, tick: int) -> None:
-        """Forget those of later ticks."""
+        """Forget the keyframes of later ticks."""
         self._drop([kept for kept in self._kept if kept.tick <= tick])
 
     def onward(self, first: Keyframe) -> "Keyframes":
@@ -200,7 +200,7 @@ class RunHistory:
     branches: list[Branch] = field(default_factory=list)
 
     def copy(self) -> "RunHistory":
-        """The history as it is now."""
+        """A copy of the history."""
         return replace(self, **{each.name: _copied(getattr(self, each.name)) for each in fields(self)})
 
     # Gestures and commands.
@@ -308,7 +308,7 @@ class RunHistory:
             self.forget_tick_events(nearest.tick)
 
     def forget_tick_events(self, tick: int) -> None:
-        """Forget what happened after a tick."""
+        """Forget the events after a tick."""
         self.tick_events = until(self.tick_events, tick)
 
     # Places in the timeline.
@@ -377,7 +377,7 @@ class RunHistory:
         self.scripted = None
 
     def _take_over(self, history: list[LogEntry]) -> None:
-        """Make these entries all that ever was."""
+        """Replace the whole history by these entries."""
         self.timeline, self.log, self.entries = history, list(history), {}
         for entry in history:
             entry.implied = False

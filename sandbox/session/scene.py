@@ -74,7 +74,7 @@ class RunScene:
 
     @property
     def actions(self) -> str:
-        """What was done in it, in a few words."""
+        """The actions of the run, in a few words."""
         return actions_in_words(self.script)
 
     def follows(self, earlier: "RunScene") -> bool:
@@ -82,7 +82,7 @@ class RunScene:
         return self.level == earlier.level and earlier.is_done_by(self.script[: len(earlier.script)])
 
     def is_done_by(self, script: Sequence[ScriptLine]) -> bool:
-        """Whether just these commands were done in it."""
+        """Whether the run consists of just these commands."""
         return len(script) == len(self.script) and _plain(script) == _plain(self.script)
 
     def session(self) -> Session:
@@ -111,7 +111,7 @@ class SceneTaker:
     _lines: dict[int, ScriptLine] = field(default_factory=dict)
 
     def take(self) -> RunScene:
-        """How the run stands now, without what was undone."""
+        """The run as it stands, without undone commands."""
         session, history = self.session, self.session.history
         counting = [entry for entry in history.timeline if entry.tick <= session.tick and entry.in_effect]
         script = tuple(self._line(entry) for entry in counting)
@@ -190,7 +190,7 @@ def scene_lines(scene: RunScene, source: Path | None) -> Iterator[bytes]:
 
 
 def _changed(state: Snapshot, before: Snapshot | None) -> list[str]:
-    """Names of the arrays that are others than in an earlier state."""
+    """Names of the arrays that differ from an earlier state."""
     if before is None:
         return list(BY_STORED)
     pairs = {stored: (state.arrays[column.name], before.arrays[column.name]) for stored, column in BY_STORED.items()}
@@ -204,7 +204,7 @@ def begins_as_scene(path: str | os.PathLike[str]) -> bool:
 
 
 def read_about(path: Path) -> About:
-    """What a scene's first line says of it. Raises ReplayError."""
+    """The run of a scene's file as its first line describes it. Raises ReplayError."""
     head, _ = _read_header(str(path), next(iter(ReplayLines(path)), b""))
     return _about(path, head, one_line(str(head.level.get("name", ""))), one_line(head.deeds))
 
@@ -236,7 +236,7 @@ def read_scene(path: Path) -> tuple[RunScene, About]:
 
 @dataclass(kw_only=True)
 class _SceneReading(RunReading):
-    """What is read of a scene of a level."""
+    """Reads a scene of a level, line by line."""
 
     level: Level
     standings: list[Standing] = field(default_factory=list)

@@ -96,7 +96,7 @@ class Session:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a gesture to take back."""
+        """Whether a gesture can be undone."""
         return bool(self.history.done)
 
     @property
@@ -111,7 +111,7 @@ class Session:
 
     @property
     def recording(self) -> Path | None:
-        """The file that this run is being recorded to."""
+        """The file to which this run is recorded."""
         return None if self._recorder is None else self._recorder.path
 
     def snapshot(self) -> Snapshot:
@@ -119,7 +119,7 @@ class Session:
         return take(self.world)
 
     def new_gesture(self) -> int:
-        """A gesture number of one's own, higher than all before."""
+        """A new number for a gesture, higher than all before."""
         return self.history.new_gesture()
 
     def submit(self, command: Command, gesture: int | None = None) -> None:

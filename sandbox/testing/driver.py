@@ -69,7 +69,7 @@ class Driver:
         return self.session.tick / self.session.world.settings.tick_rate
 
     def run(self, seconds: float) -> None:
-        """Let it run for some simulated time [s]."""
+        """Run for some simulated time [s]."""
         for _ in range(self._ticks(seconds)):
             self._advance()
 

@@ -50,7 +50,7 @@ def pictures_of(config: pytest.Config, found: "Comparison", path: Path) -> list[
 
 
 def name_of(config: pytest.Config, path: Path) -> str:
-    """What is written of a file is called by its place."""
+    """Name for the files of evidence about a file, made of its place."""
     return "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
 
 

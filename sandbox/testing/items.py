@@ -38,7 +38,7 @@ class ToldItem(pytest.Item):
 
 
 class RecordingTest(pytest.File):
-    """A recording, which is one test."""
+    """Collects the one test of a recording."""
 
     def collect(self) -> Iterator[pytest.Item]:
         """The test."""
@@ -51,7 +51,7 @@ class ReplayItem(ToldItem):
     mark = "replay"
 
     def runtest(self) -> None:
-        """Run it. Raises Failed."""
+        """Verify the recording. Raises Failed."""
         from sandbox.testing.replaying import replay_test
 
         updated = replay_test(self.config, self.path)
@@ -60,7 +60,7 @@ class ReplayItem(ToldItem):
 
 
 class LevelTests(pytest.File):
-    """A level file: that it can be built, and each of its checks."""
+    """Collects the tests of a level file: that it can be built, and each of its checks."""
 
     _running: "Iterator[tuple[int, CheckResult] | None] | None" = None
 
@@ -96,7 +96,7 @@ class LevelItem(ToldItem):
     """A level is read and built without a fault."""
 
     def runtest(self) -> None:
-        """Run it. Raises Failed."""
+        """Build the level. Raises Failed."""
         from sandbox.level.assembly.build_world import build_world
         from sandbox.testing.replaying import check_rollback_of_level
 
@@ -119,7 +119,7 @@ class CheckItem(ToldItem):
         self.number = number
 
     def runtest(self) -> None:
-        """Run it. Raises Failed."""
+        """Run the check. Raises Failed."""
         assert isinstance(self.parent, LevelTests)
         result = self.parent.result(self.number)
         if not result.passed:
@@ -127,10 +127,10 @@ class CheckItem(ToldItem):
 
 
 class GoalItem(ToldItem):
-    """The solution beside a level wins it."""
+    """The test that the solution beside a level wins it."""
 
     def runtest(self) -> None:
-        """Run it. Raises Failed."""
+        """Run the solution. Raises Failed."""
         from sandbox.session.checking import try_goal
 
         assert isinstance(self.parent, LevelTests)
@@ -142,7 +142,7 @@ class GoalItem(ToldItem):
 
 
 class GoldenTest(pytest.File):
-    """A golden file, which is one test."""
+    """Collects the one test of a golden file."""
 
     def collect(self) -> Iterator[pytest.Item]:
         """The test."""
@@ -155,7 +155,7 @@ class GoldenItem(ToldItem):
     mark = "golden"
 
     def runtest(self) -> None:
-        """Run it. Raises Failed."""
+        """Compare with the golden file. Raises Failed."""
         from sandbox.level.format.level_error import LevelError
         from sandbox.session.golden import GoldenError, differences, read_golden, write_golden
         from sandbox.session.replay.recording import ReplayError

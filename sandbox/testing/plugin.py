@@ -156,7 +156,7 @@ _updated: list[str] = []
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """Show what was recorded again."""
+    """List the recordings that were recorded again."""
     if _updated:
         from sandbox.testing.replaying import grouped
 

@@ -115,12 +115,12 @@ class _Golden:
         return None if found is None else to_the_end(found)
 
     def renames_told(self) -> list[str]:
-        """What is called otherwise, a line each."""
+        """Lines that say which names have changed."""
         return [f"{self._level_name}: {old} is called {new} now" for old, new in self.renames.items()]
 
     @property
     def _level_name(self) -> str:
-        """How messages call the level that it runs on."""
+        """The name in messages of the level that a recording runs on."""
         return (file_of(self.level) if self.level is not None else "") or "level"
 
     def moves_told(self) -> list[str]:
@@ -363,7 +363,7 @@ def check_rollback_of_level(config: pytest.Config, level: "Level") -> None:
 
 
 def update_of(name: str, recorded: "Replay", moved: list[str], found: "Comparison | None") -> Update:
-    """What to tell of a recording that was recorded again."""
+    """The report of a recording that was recorded again."""
     old = [] if recorded.is_of_this_physics else [f"recorded with physics version {recorded.physics_version}"]
     cause = [*old, *moved]
     if found is None:

@@ -22,7 +22,7 @@ class AxleTool(Tool):
     """Join the two bodies under a click by a hinge there, or one body to the world. Each axle is a gesture."""
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
-        """Put an axle there on a press."""
+        """Put an axle at the place of a press."""
         if event.kind != "down" or event.button != 1:
             return NOTHING
         front = particle_at(snapshot, event.position, event.pick_radius)
@@ -52,7 +52,7 @@ class AxleTool(Tool):
         return Response(tuple(Submission(command, gesture) for command in commands))
 
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
-        """A particle of what an axle would go through."""
+        """A particle of the body that an axle would go through."""
         return particle_at(snapshot, place, within)
 
 

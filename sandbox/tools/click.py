@@ -20,11 +20,11 @@ class ClickTool(Tool):
     is_held = False
 
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
-        """What a click on a particle does."""
+        """The commands of a click on a particle."""
         raise NotImplementedError
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
-        """Do it on a press."""
+        """Submit the tool's commands for a press."""
         if event.kind != "down" or event.button != 1:
             return NOTHING
         particle = nearest_particle(snapshot, event.position, self.reach * event.pick_radius)
@@ -38,17 +38,17 @@ class PinTool(ClickTool):
     """Toggle the pin of the particle that is clicked."""
 
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
-        """Pin or unpin it."""
+        """Pin or unpin the particle."""
         return [Pin(particle) if snapshot.inverse_mass[particle] > 0.0 else Unpin(particle)]
 
 
 class DeleteTool(ClickTool):
-    """Take out what is clicked, with all that hangs on it."""
+    """Deletes the clicked particle, with all that hangs on it."""
 
     reach = REACH
 
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
-        """Remove it."""
+        """Remove the particle."""
         return [Remove(particle=particle)]
 
 
@@ -58,7 +58,7 @@ class FreezeTool(ClickTool):
     reach = REACH
 
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
-        """Freeze or thaw all of its body."""
+        """Freeze or thaw all of the particle's body."""
         return freezing(particle, snapshot)
 
 

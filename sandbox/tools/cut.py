@@ -36,7 +36,7 @@ class CutTool(PlacedTool):
         return NOTHING
 
     def cancel(self) -> Response:
-        """End the stroke; what is cut stays cut."""
+        """End the stroke; cut springs stay cut."""
         self._gesture, self._trail = None, []
         return NOTHING
 

@@ -96,7 +96,7 @@ class StrokeTool(PlacedTool):
         self.count = 0
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
-        """Begin a stroke, go on with it, or make a body of it."""
+        """Begin a stroke, continue it, or make a body of it."""
         self.place = event.position
         if event.kind == "down" and event.button == 1:
             self._stroke, self._is_drawing, self._refusal = [event.position], True, ""

@@ -209,7 +209,7 @@ class ThrowTool(PlacedTool):
         raise NotImplementedError
 
     def reconcile(self, snapshot: Snapshot) -> None:
-        """Know what is in the way."""
+        """Find out what is in the way."""
         self._snapshot = snapshot
 
     @property
@@ -293,7 +293,7 @@ class DropTool(Sized, ThrowTool):
 
     @property
     def colour(self) -> str:
-        """The colour of what is dropped next."""
+        """Colour of the next part."""
         return COLOURS[self.count % len(COLOURS)]
 
     @property

@@ -124,7 +124,7 @@ class WindTool(PlacedTool):
         return [] if self._gesture is None or self._place == self._pressed_at else arrow(self._pressed_at, self._place)
 
     def cancel(self) -> Response:
-        """Let the air be as it was."""
+        """Switch the wind off again."""
         gesture, self._gesture = self._gesture, None
         return NOTHING if gesture is None else Response((Submission(self._before, gesture),))
 

@@ -127,12 +127,12 @@ class Tool(ABC):
 
     @property
     def landing(self) -> Point | None:
-        """Where [m] a click would put what it adds; None: nowhere."""
+        """Where [m] a click would put the new part; None: nowhere."""
         return self.place
 
     @property
     def fits(self) -> bool:
-        """Whether what it adds has room there."""
+        """Whether the new part has room there."""
         return True
 
     @property
@@ -142,7 +142,7 @@ class Tool(ABC):
 
     @property
     def preview(self) -> DropPicture | None:
-        """A picture of what a click would add at `place`."""
+        """A picture of the new part at `place`."""
         return None
 
     @property
@@ -174,7 +174,7 @@ class Sized:
         return self.size
 
     def resize(self, steps: float) -> bool:
-        """Make it larger, by steps of the wheel."""
+        """Make the new part larger, by steps of the wheel."""
         self.size = resized(self.size, steps)
         return True
 
@@ -207,5 +207,5 @@ class PlayTool:
 
     @property
     def action(self) -> str:
-        """The action that takes it up."""
+        """The action that takes the tool up."""
         return f"tool_{self.name}"

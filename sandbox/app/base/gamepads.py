@@ -56,7 +56,7 @@ class Gamepads:
         self._down: dict[tuple[int, str], str] = {}
 
     def begin(self) -> None:
-        """Let gamepads be heard that are there or come."""
+        """Start to listen to gamepads, those that are there and those that come."""
         from pygame._sdl2 import controller
 
         with contextlib.suppress(pygame.error):

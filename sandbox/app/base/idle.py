@@ -109,6 +109,6 @@ class IdleCollector:
         self._full_is_due = True
 
     def close(self) -> None:
-        """Leave it to Python again."""
+        """Let Python collect garbage by itself again."""
         if self._was_enabled:
             gc.enable()

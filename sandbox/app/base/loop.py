@@ -56,7 +56,7 @@ class TickClock:
 
 
 def at_once(slices: Generator[object, None, Made]) -> Made:
-    """What work in slices comes to."""
+    """The result of work that is done in slices, made without a pause."""
     while True:
         try:
             next(slices)
@@ -75,11 +75,11 @@ class SliceQueue:
         return len(self._works)
 
     def add(self, work: Iterator[bool]) -> None:
-        """Take in one more, after the others."""
+        """Add a generator of work, behind the others."""
         self._works.append(work)
 
     def go_on(self, budget: float) -> None:
-        """Go on for about so long [s], or until everything waits."""
+        """Work for about `budget` [s], or until every generator waits."""
         end, waiting = time.perf_counter() + budget, 0
         while waiting < len(self._works):
             went_on = next(self._works[0], None)
@@ -122,7 +122,7 @@ class Profile:
             self.milliseconds[name].append(1e3 * (time.perf_counter() - start))
 
     def end_frame(self, seconds: float) -> None:
-        """Note what a whole frame took [s]."""
+        """Note how long a whole frame took [s]."""
         self.milliseconds["frame"].append(1e3 * seconds)
         self.frames += 1
 

@@ -160,7 +160,7 @@ class CompareScreen(PlayScreen):
         self._app.rebuild()
 
     def _next_runs(self) -> tuple[TwinPlayback, TwinPlayback]:
-        """Both runs from their beginning."""
+        """Fresh sessions of both runs."""
         assert isinstance(self.playback, TwinPlayback)
         return self.playback.reset(), self.other.reset()
 
@@ -175,7 +175,7 @@ class CompareScreen(PlayScreen):
         self._app.show_replay_progress(other, self.can_cancel)
 
     def restart(self) -> None:
-        """Begin both again from their beginning."""
+        """Begin both runs again."""
         super().restart()
         if self.panel is not None and self.side == SIDES[1]:
             self.panel.attach(self.other)
@@ -210,7 +210,7 @@ class CompareScreen(PlayScreen):
         """Open nothing: of a pair, what is done to one would not be done to the other."""
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
-        """Make what is dropped larger, or zoom both."""
+        """Resize the part that is about to be dropped, or zoom both views."""
         super().turn_wheel(self._in_first(pixel), steps)
 
     # A frame.
@@ -232,7 +232,7 @@ class CompareScreen(PlayScreen):
         self._show_ghost()
 
     def _show_ghost(self) -> None:
-        """Show on the pad where the other side's springs are."""
+        """Mark on the pad the Cs and Cd of the other side's springs."""
         panel = self.panel
         if panel is not None and panel.pad is not None:
             there = self.other if self.side == SIDES[0] else self.playback
@@ -240,7 +240,7 @@ class CompareScreen(PlayScreen):
             panel.pad.show_ghost(self.side, name, coefficients_of(there.session.world, panel.material))
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
-        """Draw both, what each is set to, and how far they are apart."""
+        """Draw both runs, the settings of each, and how far apart they are."""
         assert self.beside is not None
         super().draw(surface, profile)
         mine, its = self.stage, self.beside
@@ -304,7 +304,7 @@ class CompareScreen(PlayScreen):
         return [lines[0] for lines in self.captions()]
 
     def title(self) -> str:
-        """What the window is called."""
+        """Title of the window."""
         return f"{super().title()}, two settings"
 
 
@@ -333,7 +333,7 @@ class Difference:
 
     @staticmethod
     def figures(state: Snapshot) -> str:
-        """What a run does, in figures."""
+        """Energy and strain of a run's state, in words."""
         moving = shown_particles(state) & (state.inverse_mass > 0.0)
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             motion = 0.5 * float(np.sum(state.mass[moving] * np.sum(state.velocity[moving] ** 2, axis=1)))

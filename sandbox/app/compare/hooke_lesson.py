@@ -81,7 +81,7 @@ class HookeLesson(CompareScreen):
     # A frame.
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
-        """Let time pass, and look whether it has exploded."""
+        """Let time pass, and look whether one of the springs has exploded."""
         super().update(frame_time, pointer, profile)
         world = self.playback.session.world
         if self.exploded_at is None and has_exploded(world):
@@ -99,13 +99,13 @@ class HookeLesson(CompareScreen):
         self.restart_button.visible = self.exploded_at is not None
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
-        """Draw both, and the word for what happened."""
+        """Draw both springs, and the word for what happened."""
         super().draw(surface, profile)
         if self.exploded_at is not None:
             draw_card_of_words(surface, self._ui, pygame.Rect(self.viewport), "It exploded.")
 
     def captions(self) -> tuple[list[str], list[str]]:
-        """What stands over each half: the formula and its numbers."""
+        """The caption of each half: the formula and its numbers."""
         trial = self.trial
         return (
             ["Hooke: F = -k x - c v", f"k = {trial.k:,.0f} N/m   c = {C:g} N s/m"],
@@ -195,7 +195,7 @@ class LessonPanel:
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the trial as it is now."""
+        """Show the values of the present trial."""
         trial = self._trial
         self.text.show_text(words(trial, self._exploded_at))
         limit = f"at most {trial.highest_k:,.0f}"

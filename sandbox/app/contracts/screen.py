@@ -45,7 +45,7 @@ class Screen(Protocol):
 
     @property
     def camera(self) -> Camera:
-        """What part of the world is seen."""
+        """The camera of the world on the screen."""
         ...
 
     def build(self, ui: Ui) -> None:

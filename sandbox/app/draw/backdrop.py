@@ -36,7 +36,7 @@ _GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER, "metal": NO_GRAIN, "gla
 
 
 class Backdrop:
-    """The still picture of one view."""
+    """The background of one view, drawn once and kept."""
 
     def __init__(self) -> None:
         self._painter = Painter()

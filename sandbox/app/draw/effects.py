@@ -53,7 +53,7 @@ class _Motes:
 
 
 class Effects:
-    """What flies about on one screen."""
+    """Dust, drops, sparks and marks of breaks on one screen."""
 
     def __init__(self) -> None:
         self._forget()

@@ -92,7 +92,7 @@ def is_filled(body: BodyDef) -> bool:
 
 
 def body_looks(level: Level) -> list[Look]:
-    """What each body is drawn as."""
+    """The look of each body."""
     names, toys = list(PALETTE.values()), 0
     faces = level.look.faces if level.look is not None else None
     may_have_faces = len(level.bodies) <= MOST_FACES if faces is None else faces
@@ -150,7 +150,7 @@ def _line(body: BodyDef, stuff: str, firm: float, skin: str) -> str:
 
 
 def spring_look(level: Level, spring: SpringDef) -> Look:
-    """What a loose spring is drawn as."""
+    """The look of a loose spring."""
     said = _said(level, spring)
     stuff, firm = word_in(spring.material), _stiffness(level, spring.material)
     line = "muscle" if spring.drive is not None else "piston" if spring.hydraulic is not None else stuff
@@ -178,7 +178,7 @@ def ball_look(level: Level, particle: ParticleDef, index: int, many: bool) -> tu
 
 
 def ground_look(level: Level, name: str, wide: bool) -> str:
-    """What a piece of terrain is made of."""
+    """The material of a piece of terrain, as drawn."""
     said = level.look.ground.get(name) if level.look is not None else None
     return said if said in GROUNDS else word_in(name, _GROUND_WORDS) or ("soil" if wide else "metal")
 

@@ -72,7 +72,7 @@ class Scale:
 
 @dataclass
 class Overlays:
-    """What is shown of them, and the scales of their arrows."""
+    """Which overlays are on, and the scales of their arrows."""
 
     shown: set[str] = field(default_factory=set)
     velocity: Scale = field(default_factory=lambda: Scale(least=LEAST_SPEED))

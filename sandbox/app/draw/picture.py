@@ -111,7 +111,7 @@ GHOST_SHARE, GHOST_MOST = 0.55, 600
 
 
 def picture_of(part: str, size: int) -> pygame.Surface:
-    """What a part looks like, on a square of size [pixels]."""
+    """A picture of a part, on a square of size [pixels]."""
     level, state = _alone(part, 1.0, COLOURS[0])
     half, times = _half_shown(part), 3
     large = draw_picture(level, state, (times * size, times * size), (-half, -half, half, half), 1.0)

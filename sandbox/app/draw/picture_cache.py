@@ -38,7 +38,7 @@ SUFFIX = ".jpg"
 
 
 def picture_key(content: bytes) -> str:
-    """What a picture of a level file's content is called."""
+    """The name of the picture of a level file's content."""
     # Git may have given the file the line ends of the system.
     text = content.replace(b"\r\n", b"\n")
     return hashlib.blake2b(text, digest_size=8, person=f"{VERSION} {SIZE[0]}x{SIZE[1]}".encode()).hexdigest()
@@ -50,7 +50,7 @@ def shipped_picture(level: Path, key: str, theme: ThemeName) -> Path:
 
 
 def kept_picture(key: str, theme: ThemeName) -> Path:
-    """Where the picture of any other level in a theme is kept."""
+    """The path of the kept picture of a level that is not shipped, in a theme."""
     folder = Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / "pictures"
     return folder / f"{key}-{theme}{SUFFIX}"
 

@@ -126,7 +126,7 @@ class Renderer:
 
     @property
     def lattice(self) -> bool:
-        """Whether springs are shown by their strain."""
+        """Whether springs are drawn as lines, coloured by strain."""
         return "lattice" in self.overlays.shown
 
     @lattice.setter

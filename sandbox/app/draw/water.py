@@ -90,7 +90,7 @@ class Pools:
 
     @property
     def flow(self) -> bool:
-        """Whether any water flows, and so looks different all the time."""
+        """Whether any water flows, so that its picture changes all the time."""
         return any(any(pool.flow) for pool in self._pools)
 
     def draw(self, surface: pygame.Surface, marks: MarkList, camera: Camera, frame: Frame, terrain: Terrain) -> None:

@@ -124,7 +124,7 @@ def _viewing(screen: Editing) -> dict[str, Callable[[], object]]:
 
 
 def _show_menu(screen: Editing, app: Application) -> None:
-    """Offer what has no button of its own."""
+    """Open the menu of actions that have no button."""
     entries = [entry for entry in shortcuts("edit") if entry.action in (*MENU, *screen.without_button)]
     choices = [(tip_of(entry.action, "edit"), partial(app.act, entry.action)) for entry in entries]
     choose(screen.ui, "More", "", choices, columns=2)

@@ -125,7 +125,7 @@ class Bar:
         self.buttons["help"] = ui.button(place, "?", partial(press, "help"), self.back, tip=tip, style="quiet")
 
     def show(self, screen: Editing) -> None:
-        """Show what is possible now."""
+        """Enable the buttons whose actions are possible now."""
         history = screen.history
 
         def show(action: str, enabled: bool = True, on: bool = False) -> None:

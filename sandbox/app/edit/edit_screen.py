@@ -107,7 +107,7 @@ class EditScreen:
 
     @property
     def document(self) -> Document:
-        """The level in work, and what of it is selected."""
+        """The edited level with its selection."""
         return self.history.document
 
     @property
@@ -121,7 +121,7 @@ class EditScreen:
 
     @property
     def visibility(self) -> Visibility:
-        """What of the level is hidden or locked."""
+        """Which items are hidden or locked."""
         level = self.document.level
         if self._visible_in is not level:
             self._visible_in = level
@@ -130,7 +130,7 @@ class EditScreen:
         return self._visible_now
 
     def set_visibility(self, visibility: Visibility) -> None:
-        """Hide or lock other items; what is hidden is not selected."""
+        """Hide or lock items; hidden ones are not selected."""
         self._visibility, self._visible_in = visibility, None
         if self.document.selection & visibility.hidden:
             self.select(self.document.selection - visibility.hidden)
@@ -371,7 +371,7 @@ class EditScreen:
         self.tool = name
 
     def cancel(self) -> None:
-        """Give up what is under way, then the tool, then the selection."""
+        """Cancel the present gesture, or else put the tool away; picking ends."""
         self.cursor = None
         if not self.pointer_tool.cancel() and self.tool != "select":
             self.choose_tool("select")
@@ -447,7 +447,7 @@ class EditScreen:
         """Do nothing: no key of a level is held."""
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Offer what can be done at a pixel."""
+        """Open the menu of the thing at a pixel."""
         self.settle()
         open_context_menu(self, pixel)
 
@@ -527,7 +527,7 @@ class EditScreen:
         self.rulers.draw(surface, self.camera, self.pointer)
 
     def draw_snap(self, surface: pygame.Surface, snapped: Snap) -> None:
-        """Mark what the pointer snaps to, with a word."""
+        """Mark the thing that the pointer snaps to, with a word."""
         draw_snap(surface, self.ui, self.camera.to_pixels(snapped.point), snapped)
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
@@ -551,7 +551,7 @@ class EditScreen:
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
     def title(self) -> str:
-        """Level, * where it is not saved, and that it is edited."""
+        """Title of the window: the level, * where it is not saved, and that it is edited."""
         return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
 
     def states(self) -> list[str]:
@@ -569,14 +569,14 @@ class EditScreen:
         self.view = View(self)
 
     def settle(self) -> None:
-        """End what is drawn, and give up what is dragged."""
+        """Finish the drawing, and drop a drag."""
         if isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.put_away()
         self._give_up()
         self.history.end_merge()
 
     def _give_up(self) -> None:
-        """Give up what is drawn or dragged."""
+        """Drop the drawing or the drag."""
         if self.pointer_tool.transform is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
 

@@ -56,7 +56,7 @@ class Film:
 
     @property
     def seconds(self) -> float:
-        """How long it is [s]."""
+        """Length of the film [s]."""
         return (self.last - self.first) / self.rate
 
     @property
@@ -66,7 +66,7 @@ class Film:
 
     @property
     def box(self) -> Box:
-        """What its pictures show [m]: left, bottom, right, top."""
+        """The part of the world that its pictures show [m]: left, bottom, right, top."""
         if self._box is not None:
             return self._box
         (x, y), wide, tall = self._centre, self._shown[0] / self._zoom / 2, self._shown[1] / self._zoom / 2
@@ -123,7 +123,7 @@ class Film:
 
 
 class _FilmStage:
-    """What the pictures of one pass through a film are drawn on."""
+    """Surface, camera and renderer for one pass through a film."""
 
     def __init__(self, film: Film, size: Size, name: str) -> None:
         part = min(size[0] / film._shown[0], size[1] / film._shown[1])
@@ -137,7 +137,7 @@ class _FilmStage:
         self._tag = corner_tag(name, size) if name else None
 
     def draw(self, session: Session, before: Snapshot, now: Snapshot, alpha: float) -> pygame.Surface:
-        """Draw what lies between two ticks of a session."""
+        """Draw the state between two ticks of a session."""
         surface, overlay = self._surface, Overlay()
         if "stability" in self._renderer.overlays.shown:
             overlay.stability = self._paint.shares(session.world)
@@ -186,7 +186,7 @@ class FilmPair:
 
     @property
     def box(self) -> Box:
-        """What the pictures of each show [m]: left, bottom, right, top."""
+        """The part of the world that each picture shows [m]: left, bottom, right, top."""
         return self.parts[0][1].box
 
     def pictures(
@@ -237,7 +237,7 @@ class _PairSheet:
             self._tags.append(corner_tag(name, size))
 
     def lay(self, halves: Sequence[pygame.Surface]) -> pygame.Surface:
-        """Lay a picture of each on it."""
+        """Lay a picture of each run on the sheet."""
         for picture, place in zip(halves, self.places, strict=True):
             self._surface.blit(picture, place)
         pygame.draw.line(self._surface, LINE, *self._line, self._thick)

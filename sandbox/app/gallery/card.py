@@ -85,11 +85,11 @@ class Card(Pressable):
 
     @property
     def is_pointed_at(self) -> bool:
-        """Whether the mouse is over it, or the keyboard works on it."""
+        """Whether the mouse is over the card, or the keyboard works on it."""
         return self.hovered or self.focused
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The card as it is now."""
+        """The card's picture."""
         return self._painted(size, self._lines(size[0], self.is_small))
 
     def paint_open(self) -> pygame.Surface:
@@ -144,14 +144,14 @@ class Card(Pressable):
             y += ui.px(LINE_HEIGHT)
 
     def _lines(self, width: int, is_row: bool) -> list[tuple[str, Colour]]:
-        """What stands below the name, and in which colour."""
+        """The lines below the name, with their colours."""
         inside = width - 2 * self.ui.px(PADDING)
         colour = DANGER if self.broken else MUTED
         lines = wrapped(self.line or self.text, self.ui.font(LINE_SIZE), inside, 1 if is_row else SHORT_LINES)
         return [(line, colour) for line in lines]
 
     def _all_lines(self, width: int) -> list[tuple[str, Colour]]:
-        """What stands below the name once there is room for all of it."""
+        """All lines below the name, for a card with room for them."""
         inside, font = width - 2 * self.ui.px(PADDING), self.ui.font(LINE_SIZE)
         texts = ((self.line, TEXT), (self.text, DANGER if self.broken else MUTED), (", ".join(self.tags), ACCENT))
         return [(line, colour) for text, colour in texts if text for line in wrapped(text, font, inside, MOST_LINES)]
@@ -180,7 +180,7 @@ class Card(Pressable):
         card.blit(plate, plate.get_rect(bottomright=(picture.right - edge, picture.bottom - edge)))
 
     def press(self) -> None:
-        """Open it."""
+        """Open the card's level or recording."""
         self.action()
 
 

@@ -120,7 +120,7 @@ class Gallery:
 
     @property
     def is_on_top(self) -> bool:
-        """Whether no other page lies over it."""
+        """Whether no other page lies over the gallery."""
         return self._ui.top_sheet is self.sheet
 
     def close(self) -> None:
@@ -278,7 +278,7 @@ class Gallery:
     # Where it stands.
 
     def _arrange(self) -> None:
-        """Lay out the groups with what is found of them."""
+        """Lay out the groups with the cards that fit the search."""
         ui, y = self._ui, 0.0
         for group in self.groups:
             shown = [card for card in group.cards if self._fits(group, card)]
@@ -508,7 +508,7 @@ class Header:
         return left
 
     def show_sections(self, titles: Sequence[str], go: Callable[[str], None]) -> None:
-        """Offer the sections, where there is room for them."""
+        """Open the menu of sections, where there is room for them."""
         if not self._is_wide or len(titles) < 2:
             return
         ui, x = self._ui, _MARGIN

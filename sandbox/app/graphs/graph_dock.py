@@ -218,7 +218,7 @@ class GraphDock:
     # Files.
 
     def save_table(self) -> None:
-        """Keep what is shown as a table, CSV."""
+        """Write the curves as a table, CSV."""
         lines, unit = self.lines(), MEASURES[self.shown].unit
         if not lines:
             self._app.say("There is nothing to save yet.", self._app.screen)
@@ -234,7 +234,7 @@ class GraphDock:
         self._keep(recordings_folder, ".csv", lambda path: write_file(path, text.getvalue().encode()))
 
     def save_picture(self) -> None:
-        """Keep what is shown as a picture, PNG."""
+        """Write the curves as a picture, PNG."""
         times = max(1.0, PICTURE_SCALE / self._ui.scale)
         size = round(self._place.width * times), round(self._place.height * times)
         picture = pygame.Surface(size, 0, 32)
@@ -304,7 +304,7 @@ def _strains(moment: Moment) -> dict[str, float]:
 
 
 def _named(moment: Moment) -> list[tuple[str, int]]:
-    """The picked particles that there still are."""
+    """Names of the picked particles that still exist."""
     world = moment.world
     slots = [slot for slot in moment.picked if slot < world.particle_count and world.particle_active[slot]]
     return [(world.particle_names[slot], slot) for slot in slots]
@@ -370,7 +370,7 @@ class Track:
         self._count = int(np.searchsorted(self._ticks[: self._count], tick))
 
     def add(self, tick: int, values: Mapping[str, float]) -> None:
-        """Add what was measured at a tick after all others."""
+        """Add the values of a tick after all others."""
         if self._count == 2 * self._kept:
             for array in (self._ticks, *self._values.values()):
                 array[: self._kept] = array[self._kept :]

@@ -152,11 +152,11 @@ class CoefficientPad(Draggable):
         self._done()
 
     def on_move(self, at: Pixel) -> None:
-        """Show what is known of the Cs and Cd under the mouse."""
+        """Show the measured values at the Cs and Cd under the mouse."""
         self._show_pointed(self._pair_at(at))
 
     def on_hover(self) -> None:
-        """Show nothing of them while the mouse is elsewhere."""
+        """Hide those values while the mouse is elsewhere."""
         if not self.hovered:
             self._show_pointed(None)
 
@@ -409,7 +409,7 @@ class CoefficientPad(Draggable):
         surface.set_clip(None)
 
     def _paint_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Paint the words on the map: what is proven there."""
+        """Paint the words on the map, which say what is proven where."""
         label = self.ui.font(LABEL_SIZE)
         if self.zones is None or not self.state.enabled:
             return

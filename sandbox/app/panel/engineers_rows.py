@@ -164,7 +164,7 @@ class ResponseCurve(Widget):
             self.repaint()
 
     def show_none(self, words: str) -> None:
-        """Say in its place why there is no one spring to be shown."""
+        """Write in the curve's place why there is no one spring to be shown."""
         if words != self.words:
             self._of, self.words = None, words
             self.repaint()

@@ -236,7 +236,7 @@ class Panel(PropertyOwner):
     # Showing.
 
     def refresh(self) -> None:
-        """Show what the world has now."""
+        """Show the world's present values."""
         world = self.playback.session.world
         settings = world.settings
         self._follow_what_joins()

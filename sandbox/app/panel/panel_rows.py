@@ -48,7 +48,7 @@ class PanelRows:
         return place
 
     def place(self, x: float, below: float, width: float, height: float) -> pygame.Rect:
-        """A place so far below the top of the next row."""
+        """A place at a distance below the top of the next row."""
         return self.ui.rect(x, self.y + below, width, height)
 
     def form(self, owner: PropertyOwner, sections: Sequence[Section]) -> "PanelForm":
@@ -151,7 +151,7 @@ class SectionRows(Protocol):
 
 
 class SectionOwner(Protocol):
-    """What sections are made of: a panel and its run."""
+    """The panel of a section, with its run."""
 
     playback: Playback
 
@@ -200,7 +200,7 @@ class SidePanel(Protocol):
     pad: CoefficientPad | None
 
     def refresh(self) -> None:
-        """Show what the world has now."""
+        """Show the world's present values."""
         ...
 
     def show_choices(self, strength: str, views: Set[str]) -> None:

@@ -58,7 +58,7 @@ class PlayRows:
         return dial, words
 
     def refresh(self) -> None:
-        """Show what the world has now."""
+        """Show the world's present values."""
         world = self.playback.session.world
         settings = world.settings
         has_springs = bool((world.spring_active & (world.material >= 0)).any())

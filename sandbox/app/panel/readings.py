@@ -55,12 +55,12 @@ def seconds(value: float) -> str:
 
 
 def per_cent(fraction: float, digits: int = 2) -> str:
-    """A share as a person says it."""
+    """A fraction as per cent."""
     return f"{number(100.0 * fraction, digits)} %" if abs(fraction) >= UNSEEN else "0 %"
 
 
 def motion_words(motion: SpringMotion) -> str:
-    """How an error goes back, and when it is gone."""
+    """In words how an error decays, and when it is gone."""
     if motion.swings:
         goes_on = motion.rest > LONG
         return "swings on and on" if goes_on else f"swings, at rest after {seconds(motion.rest)}"

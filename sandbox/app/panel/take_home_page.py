@@ -121,7 +121,7 @@ class _TakeHomePage:
         self._say("It is on the clipboard." if copied else "The clipboard is not available here.")
 
     def _answer(self) -> None:
-        """What to paste, and below it what is to be known about it."""
+        """Show the code to paste, and below it what to know about it."""
         ui = self._ui
         wide = (self._width - 2 * MARGIN - 2 * GAP) / 3
         actions = (

@@ -146,6 +146,6 @@ class ViewRow:
             )  # fmt: skip
 
     def show(self, shown: Set[str]) -> None:
-        """Mark those that are shown."""
+        """Mark the views that are on."""
         for name, button in self.buttons.items():
             button.is_selected = name in shown

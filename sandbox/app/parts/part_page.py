@@ -115,7 +115,7 @@ class PartCard(Widget):
         self.repaint()
 
     def mark(self, is_taken: bool) -> None:
-        """Show whether it is in hand."""
+        """Show whether the part is in hand."""
         if is_taken != self.is_taken:
             self.is_taken = is_taken
             self.repaint()
@@ -161,7 +161,7 @@ class PartCard(Widget):
             y += font.get_linesize()
 
     def press_key(self, event: pygame.event.Event) -> bool:
-        """Take it up by a key, or go to another card."""
+        """Take the part in hand by a key, or go to another card."""
         if event.key in (*ENTER_KEYS, pygame.K_SPACE):
             self._target.take(self.part, by_key=True)
             return True
@@ -174,16 +174,16 @@ class PartCard(Widget):
         return False
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Take it up by the mouse."""
+        """Take the part in hand."""
         self._target.take(self.part, by_key=False)
         return True
 
     def on_drag(self, at: Pixel) -> None:
-        """Carry it."""
+        """Carry the part."""
         self._target.carry(at)
 
     def on_release(self, at: Pixel) -> None:
-        """Let it go."""
+        """Drop the part."""
         self._target.drop(at)
 
 
@@ -281,7 +281,7 @@ class PartPage:
         return self.sheet.is_there and len(self._unfilled) > 0
 
     def update(self) -> None:
-        """Go on filling cards, and say what is pointed at."""
+        """Go on filling cards, and describe the one under the pointer."""
         if not self.sheet.is_there:
             return
         self._unfilled.go_on(FILL_BUDGET)

@@ -43,7 +43,7 @@ NO_GHOST = "There is no best run yet: win this level first, then its ghost can r
 
 
 class Played(Protocol):
-    """What a game asks of the screen that it is on."""
+    """The screen that a game is played on."""
 
     of_document: bool
     source: Path | None
@@ -115,7 +115,7 @@ class Game:
 
     @property
     def moves(self) -> bool:
-        """Whether something of it changes by itself."""
+        """Whether anything of the game's display changes by itself."""
         return self._goal_fades or (self.card is not None and self.card.moves)
 
     @property
@@ -125,7 +125,7 @@ class Game:
 
     @property
     def result(self) -> Outcome | None:
-        """The outcome of the run as it is on the screen."""
+        """The outcome of the run in the state on the screen."""
         return outcome(self._playback.level, self._playback.current) if self._has_rules else None
 
     # Restarting.
@@ -158,7 +158,7 @@ class Game:
     # The card.
 
     def close(self) -> bool:
-        """Take the card away; whether there was one."""
+        """Remove the card; whether there was one."""
         if self.card is None:
             return False
         self.card.remove()
@@ -173,7 +173,7 @@ class Game:
         return True
 
     def build(self, ui: Ui) -> None:
-        """Lay out again what is open."""
+        """Lay out the open card again."""
         self._ui = ui
         if self.card is not None and self._ending is not None:
             self._since = self.card.since
@@ -198,7 +198,7 @@ class Game:
         return [*ahead, *again, ("Keep watching", self.keep_watching)]
 
     def _end(self, result: Outcome) -> None:
-        """Tell how the run ended, and keep it if it is the best one."""
+        """Announce how the run ended, and keep it if it is the best one."""
         playback, rate = self._playback, self._playback.level.settings.tick_rate
         before, is_best = None, False
         if result.is_won and self._keeps_best:

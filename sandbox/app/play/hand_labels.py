@@ -86,7 +86,7 @@ def keep_strength(name: str) -> None:
 
 
 def next_strength(name: str) -> tuple[str, str]:
-    """The strength after one in their order, and a line about it."""
+    """The next strength of the hand, with a line about it."""
     names = list(STRENGTHS)
     name = names[(names.index(name) + 1) % len(names)]
     return name, f"Hand: {name}, at most {STRENGTHS[name] / 10.0:g} times the weight of what it holds."

@@ -107,7 +107,7 @@ def _fitted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, area: tupl
 
 
 def _painted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, most: int = 10_000) -> pygame.Surface:
-    """The card with all rows, at most so wide [pixels]."""
+    """The card with all rows, at most `most` wide [pixels]."""
     font, line, gap = plain_font(round(TEXT_SIZE * scale), False), round(ROW * scale), round(4.0 * scale)
     inset, sample, step = round(PADDING * scale), round(SAMPLE * scale), line_height(font)
     widest = max(most - sample - 3 * inset, 1)

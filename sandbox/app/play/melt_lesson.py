@@ -15,7 +15,7 @@ LABELS = {False: "Melt them", True: "Make them whole"}
 
 
 class MeltLesson(PlayScreen):
-    """The lesson: one button over the stage."""
+    """The lesson about melting springs: one button over the stage."""
 
     welcome: ClassVar[str] = (
         "Let the jellies settle, then melt them: the very same Cs and Cd, solved one spring after another."

@@ -114,7 +114,7 @@ class PlayScreen:
 
     @property
     def camera(self) -> Camera:
-        """What part of the world is seen."""
+        """The camera of the world on the screen."""
         return self.stage.camera
 
     @property
@@ -350,7 +350,7 @@ class PlayScreen:
             self.camera.zoom_at(self.stage.cursor, steps)
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Offer what can be made of the thing there."""
+        """Open the menu of the thing under the pointer."""
         open_thing_menu(self._ui, self.stage, pixel, self.say)
 
     @property
@@ -359,7 +359,7 @@ class PlayScreen:
         return self.stage.tool_name == HAND_TOOL
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
-        """Make what is dropped larger, or zoom."""
+        """Resize the part that is about to be dropped, or zoom."""
         if not self.stage.resize(steps):
             self.camera.turn_wheel(pixel, steps)
 
@@ -455,7 +455,7 @@ class PlayScreen:
         self._choose_clicked()
 
     def _choose_clicked(self) -> None:
-        """Show in the panel what the hand has clicked."""
+        """Show in the panel the body that the hand has clicked."""
         clicked = self.stage.drag.take_click()
         if clicked is not None and isinstance(self.panel, Panel):
             self.panel.choose_particle(clicked)
@@ -468,7 +468,7 @@ class PlayScreen:
         return self._keys
 
     def press_key(self, key: int, modifiers: int) -> bool:
-        """Drive what the level lets a key drive."""
+        """Drive the motor or hydraulic that the level gives this key."""
         return self.keys.press(key, modifiers)
 
     def release_key(self, key: int) -> None:

@@ -62,7 +62,7 @@ class Problems:
         self.quick_fixes.show(words)
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Mark what is stuck."""
+        """Mark bodies that are stuck."""
         stage = self._stage()
         self.stuck.draw(surface, self._ui, stage.camera, stage.playback.current)
 
@@ -76,7 +76,7 @@ class Problems:
             self._app.take_back(STUCK)
 
     def _free(self) -> None:
-        """Free what is stuck, all in one gesture."""
+        """Free all stuck bodies in one gesture."""
         self._app.take_back(STUCK)
         if not self.stuck.free(self._stage().playback):
             self._say("Nothing is stuck.")
@@ -96,7 +96,7 @@ class Problems:
             self._app.take_back(LEFT_VIEW)
 
     def _bring_back(self) -> None:
-        """Put what has left the picture back into it, at rest."""
+        """Put bodies that left the picture back into it, at rest."""
         stage = self._stage()
         count = put_back(stage.playback, stage.first_box, self._pictures)
         self.out_of_view = OutOfView()
@@ -193,7 +193,7 @@ class StuckBodies:
         self.particles = sorted({particle for particle in chosen if particle >= 0})
 
     def free(self, playback: Playback) -> bool:
-        """Free what is stuck, all in one gesture; whether anything was."""
+        """Free all stuck bodies in one gesture; whether there were any."""
         gesture, found = playback.session.new_gesture(), self.particles
         for particle in found:
             playback.submit(Free(particle), gesture)

@@ -146,7 +146,7 @@ WHOLE = "All springs at once: it is whole again."
 
 
 def is_melted(playback: Playback) -> bool:
-    """Whether springs are solved one by one."""
+    """Whether the run uses the solver that takes springs one by one, in which bodies melt."""
     return playback.session.world.settings.solver == "single_pass"
 
 

@@ -55,7 +55,7 @@ def time_limit(level: Level) -> float | None:
 
 
 def chips_of(level: Level, state: Snapshot, result: Outcome | None) -> list[Chip]:
-    """What is shown of a state of a level that has this result."""
+    """Chips for a state of a level, with its result."""
     chips = [Chip("goal", colour=ACCENT)] if level.goal else []
     if has_clock(level.rules):
         chips.append(_clock(level, state.tick if result is None else result.tick))
@@ -218,7 +218,7 @@ class Ending:
 
     @property
     def times(self) -> list[tuple[str, Colour]]:
-        """What is said of time, each part with its colour."""
+        """The words about time, each part with its colour."""
         time = f"Time {time_text(self.outcome.tick / self.rate)}"
         if not self.outcome.is_won:
             return [(time, MUTED)]
@@ -279,14 +279,14 @@ def _lines_of(ui: Ui, ending: Ending, width: int) -> list[str]:
 
 
 def _height_of(ui: Ui, ending: Ending, width: int) -> int:
-    """How high a face is that is so wide [pixels]."""
+    """Height of a face of that width [pixels]."""
     gap, words = ui.px(_CARD_GAP), len(_lines_of(ui, ending, width)) * line_height(ui.font(_WORDS_SIZE, True))
     stars = ui.px(_LARGE_STAR) + gap if ending.outcome.is_won else 0
     return ui.px(_EMBLEM) + gap + words + gap + stars + line_height(ui.font(_TIME_SIZE)) + gap
 
 
 class _Face(Widget):
-    """What a card shows above its buttons."""
+    """The part of a card above its buttons."""
 
     def __init__(self, ui: Ui, place: pygame.Rect, ending: Ending, panel: Widget) -> None:
         super().__init__(ui, place, panel)

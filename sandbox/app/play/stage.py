@@ -223,7 +223,7 @@ class Stage:
         self.playback.respond(self.tool.handle(event, self.playback.current if among is None else among))
 
     def toggle_view(self, name: str) -> None:
-        """Show an overlay, or no longer: one of views.overlays.NAMES."""
+        """Switch an overlay on or off: one of views.overlays.NAMES."""
         self.renderer.overlays.shown ^= {name}
 
     def let_go(self) -> None:

@@ -67,7 +67,7 @@ class StatusLine:
         self.notices.append(said)
 
     def end_with(self, screen: object) -> None:
-        """Show no longer what was said on a screen."""
+        """Remove the notices of a screen that is closed."""
         for notice in list(self.notices):
             if notice.screen is screen:
                 self.notices.remove(notice)

@@ -84,7 +84,7 @@ def cursor_actions(stage: Stage, open_menu: Callable[[Pixel], None], say: Say) -
 
 
 def _entries(stage: Stage, particle: int) -> list[_Offer]:
-    """What can be made of the body of a particle."""
+    """Entries of the menu for the body of a particle."""
     playback = stage.playback
     world, state = playback.session.world, playback.current
     form, entries = _form_of(world, particle), list[_Offer]()

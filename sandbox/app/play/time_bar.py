@@ -56,7 +56,7 @@ class TimeBar:
 
     @property
     def height(self) -> float:
-        """The room that it takes [layout units]."""
+        """Height of the bar [layout units]."""
         return HEIGHT if self.is_shown else 0.0
 
     def build(self, ui: Ui, width: float, bottom: float) -> None:
@@ -190,7 +190,7 @@ class TimeBar:
             playback.seek(travel.span[0])
 
     def _choose_branch(self) -> None:
-        """Offer what followed before the run was changed in the past."""
+        """Open the menu of branches: runs that were left when the past was changed."""
         playback = self._playback()
         branches = playback.session.branches
         if not branches:

@@ -81,7 +81,7 @@ LEAVING = (
 
 @dataclass(frozen=True)
 class BarState:
-    """What the bar shows."""
+    """The state of run and window that the bar's buttons show."""
 
     name: str
     tool: str
@@ -161,7 +161,7 @@ class Toolbar:
                 button.is_enabled = name not in refused
 
     def _show_menu(self) -> None:
-        """Offer what has no room on the bar."""
+        """Open the menu of actions that do not fit on the bar."""
         press = self._press
         choices = [(tip_of(action, "play"), partial(press, action)) for action in self.left_out]
         choose(self._ui, "More", "", choices)
@@ -297,7 +297,7 @@ class PartsPalette:
             self.buttons[name].is_enabled = name not in refused
 
     def _show_menu(self) -> None:
-        """Offer what has no room on the strip."""
+        """Open the menu of parts that do not fit on the strip."""
         actions = [_action_of(name) for name in self.left_out]
         choices = [(tip_of(action, "play"), functools.partial(self._press, action)) for action in actions]
         choose(self._ui, "More", "", choices)

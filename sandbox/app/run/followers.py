@@ -68,7 +68,7 @@ class Stopped:
         self._hits: list[Containment] = []
 
     def note(self, world: World) -> None:
-        """Take in what the last tick took back."""
+        """Take in the impossible values that the last tick took back."""
         # A run that went back in time has another future.
         self._hits = [hit for hit in self._hits if hit.tick < world.tick]
         self._hits += world.contained

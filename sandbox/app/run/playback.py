@@ -110,7 +110,7 @@ class Playback:
 
     @property
     def watching(self) -> bool:
-        """Whether a replay still decides what happens."""
+        """Whether a replay's commands are still to come."""
         return self.replay is not None and not self._taken_over
 
     @property
@@ -186,14 +186,14 @@ class Playback:
         return replace(command, duration=round(RAMP_TIME * self.session.world.settings.tick_rate))
 
     def respond(self, response: Response) -> None:
-        """Queue what a tool answered."""
+        """Queue a tool's commands, and show its line."""
         for command, gesture in response.submissions:
             self.submit(command, gesture)
         if response.message:
             self.messages.append(response.message)
 
     def submit_undo(self) -> None:
-        """Take the last gesture back, also one of this frame."""
+        """Undo the last gesture, also one of this frame."""
         self._tell_cut()
         self._submit_if(self.session.can_undo, Undo(), "There is nothing to undo.")
 

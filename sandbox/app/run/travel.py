@@ -74,7 +74,7 @@ class Travel:
         return sorted([*commands, *breaks, *goals, *bookmarks, *branches], key=lambda mark: mark.tick)
 
     def _deed(self, entry: LogEntry) -> str:
-        """What a command did, in words."""
+        """The effect of a command, in words."""
         if entry.order not in self._deeds:
             action = next(user_actions(script_of([entry], self._session.world)), None)
             self._deeds[entry.order] = entry.command.type.replace("_", " ") if action is None else action.text

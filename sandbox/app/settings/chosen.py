@@ -37,7 +37,7 @@ class OneOf:
 
     @property
     def default(self) -> str:
-        """What holds until something else is chosen."""
+        """The value until another is chosen."""
         return self.options[0][0]
 
     def fault_of(self, value: Any) -> str | None:

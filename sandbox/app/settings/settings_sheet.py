@@ -173,7 +173,7 @@ class SettingsSheet:
 
 
 def _changeable(mode: str) -> list[Shortcut]:
-    """What can have other keys in a mode."""
+    """Actions whose keys can be changed in a mode."""
     return [entry for entry in shortcuts("edit" if mode == "edit" else "play") if entry.action]
 
 

@@ -40,7 +40,7 @@ class Shown:
 
 
 class _Row:
-    """Where one side is drawn, picture after picture."""
+    """Draws one side, picture after picture."""
 
     def __init__(self, level: Level, box: Box, size: tuple[int, int]) -> None:
         self._camera = Camera(viewport=(0, 0, *size))
@@ -91,7 +91,7 @@ def write_picture(comparison: Comparison, path: Path) -> None:
 
 
 def write_sides(sides: Sequence[Shown], path: Path) -> None:
-    """Any states one over the other, into a PNG. Raises OSError."""
+    """Write states of several runs, one over the other, into a PNG. Raises OSError."""
     write_png(Stack(sides, PICTURE_SIZE).draw(sides), path)
 
 

@@ -196,7 +196,7 @@ class MovieWriter:
             raise self._refusal() from None
 
     def is_closed(self) -> bool:
-        """Have the file ended; whether it is whole."""
+        """Let the encoder end; whether the file is whole."""
         assert self._ffmpeg.stdin is not None
         if not self._ffmpeg.stdin.closed:
             try:

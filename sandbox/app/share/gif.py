@@ -89,7 +89,7 @@ class GifWriter:
         self._tolerance = min(max(self._tolerance + step, 0.0), MOST_TOLERANCE) if self._count > FIRST else 0.0
 
     def close(self) -> None:
-        """Write what is left and the end; the file is whole then."""
+        """Write the last frames and the trailer, which makes the file whole."""
         self._flush()
         self._file.write(b";")
 

@@ -59,7 +59,7 @@ class SharePage:
             self._build(self._app.ui)
 
     def leave(self) -> None:
-        """Back to the run; what is being written goes on."""
+        """Go back to the run; a file that is being written goes on."""
         self._close()
         self._sharing.leave()
 
@@ -272,7 +272,7 @@ def _title(film: Film | FilmPair | None) -> str:
 
 
 class FilmPreview(Widget):
-    """What will be kept, moving; nothing but a frame at first."""
+    """A moving preview of the chosen film; nothing but a frame at first."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
         super().__init__(ui, rect, container)
@@ -286,7 +286,7 @@ class FilmPreview(Widget):
             self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The picture, as large as it fits, in a line."""
+        """The present picture, as large as it fits, in a frame."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
         surface.fill(BACKGROUND)
         if self.picture is not None:
@@ -349,7 +349,7 @@ class LinkCopying:
         ask(self._app.ui, "Copy a link to this run", _LINK_HINT, known, "Copy link", self._begin)
 
     def status(self) -> list[tuple[str, Colour]]:
-        """What the status line says of the work."""
+        """The status line's words about the work."""
         return [] if self._slices is None else [(f"making the link: {100.0 * self._done:.0f} %", ACCENT)]
 
     def _begin(self, site: str) -> str | None:

@@ -45,7 +45,7 @@ def _is_defined(record: Mapping[str, Any]) -> bool:
 
 
 def tick_hash(world: LevelWorld) -> str:
-    """What a page compares a tick with."""
+    """The hash of a state that a page compares its tick with."""
     return state_hash(world)[:TICK_DIGITS]
 
 

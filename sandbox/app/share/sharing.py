@@ -94,7 +94,7 @@ class Sharing:
 
     @property
     def step(self) -> Step:
-        """What the page shows."""
+        """The step that the page is at."""
         return "work" if self._slices is not None else "choose" if self.saved is None else "done"
 
     # What the person does.
@@ -127,7 +127,7 @@ class Sharing:
         self._suggest_name()
 
     def leave(self) -> None:
-        """Back to the run; what is being written goes on."""
+        """Go back to the run; a file that is being written goes on."""
         self.is_open = False
         self.pictures, self._filming = [], None
         if self._slices is None:
@@ -136,7 +136,7 @@ class Sharing:
             self._app.say("You can play on while it is written. Share (F12) shows the progress and can cancel it.")
 
     def choose(self, **changes: object) -> None:
-        """Change what is wanted."""
+        """Change the choices."""
         self.choices = replace(self.choices, **changes)  # type: ignore[arg-type]
         if self.is_open:
             self._film_preview()
@@ -160,7 +160,7 @@ class Sharing:
         self.choose(start=start, end=min(start + LIVELY, film.seconds))
 
     def _film_preview(self) -> None:
-        """Draw what is chosen again, where other seconds are."""
+        """Draw the chosen film again, where its seconds changed."""
         film, choices = self.film, self.choices
         chosen = (0.0, film.seconds) if film is not None and choices.kind == "png" else (choices.start, choices.end)
         if film is None or chosen == self._previewed:
@@ -191,7 +191,7 @@ class Sharing:
         self.choices = replace(self.choices, name=path.stem)
 
     def save(self) -> None:
-        """Begin to write what is wanted."""
+        """Begin to write the chosen file."""
         film, choices = self.film, self.choices
         if film is None or self._slices is not None:
             return
@@ -211,7 +211,7 @@ class Sharing:
         self._slices = self._export.slices()
 
     def cancel(self) -> None:
-        """Give up what is being written; nothing of it stays."""
+        """Stop writing the file, and remove what there is of it."""
         if self._slices is None:
             return
         self._slices.close()
@@ -248,7 +248,7 @@ class Sharing:
         self._suggest_name()
 
     def open_folder(self) -> None:
-        """Show the file in its folder."""
+        """Open the file's folder in the system's file manager."""
         if self.saved is not None and not open_path(self.saved.parent):
             self._tell(f"No file manager was found. The folder is {_shown(self.saved.parent)}")
 
@@ -273,7 +273,7 @@ class Sharing:
 
     @property
     def moves(self) -> bool:
-        """Whether it is at work, or its page shows the film."""
+        """Whether a file is being written, or the page shows the film."""
         return self.is_open or self._slices is not None or self._copying is not None
 
     def update(self, frame_time: float) -> None:
@@ -302,7 +302,7 @@ class Sharing:
         return self.pictures[min(int(at * self._preview_fps), len(self.pictures) - 1)]
 
     def status(self) -> list[tuple[str, Colour]]:
-        """What the status line says of work that goes on beside a run."""
+        """The status line's words about work beside a run."""
         if self._slices is None or self._export is None or self.is_open:
             return []
         return [(f"writing {self._export.path.name}: {100.0 * self.done:.0f} %", ACCENT)]

@@ -55,12 +55,12 @@ class SiteLevel:
 
     @property
     def page(self) -> str:
-        """The address of its page in the site."""
+        """The address of the level's page in the site."""
         return f"{LEVELS}/{self.address}.html"
 
     @property
     def toy(self) -> str:
-        """The address of what plays it."""
+        """The address of the page that plays the level."""
         return f"{LEVELS}/{self.address}.toy"
 
     @property

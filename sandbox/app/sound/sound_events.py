@@ -377,7 +377,7 @@ class Timbres:
 
 
 def timbres_of(world: LevelWorld) -> Timbres:
-    """The bodies of a world as they are now."""
+    """Timbres of the world's bodies."""
     owners, body = np.unique(world.owner, return_inverse=True)
     body = body.reshape(-1)
     count = len(owners)

@@ -23,7 +23,7 @@ SIGNALS_FROM = -2
 
 
 class SoundChoices(Protocol):
-    """What is chosen, by name."""
+    """The chosen volume and sounds, by name."""
 
     def __getitem__(self, name: str) -> Any:
         """The value that was chosen."""
@@ -40,7 +40,7 @@ class SoundingRun(Protocol):
 
     @property
     def camera(self) -> Camera:
-        """What part of the world is seen."""
+        """The camera of the world that is heard."""
         ...
 
 
@@ -137,7 +137,7 @@ class Device:
         self._do(channel, lambda mixed: mixed.set_volume(*gains))
 
     def fade(self, channel: int, seconds: float) -> None:
-        """End a channel within so long [s]."""
+        """Fade a channel out within so many seconds."""
         self._do(channel, lambda mixed: mixed.fadeout(round(1000 * seconds)))
 
     def is_busy(self, channel: int) -> bool:
@@ -229,7 +229,7 @@ class Sounds:
 
 
 def cue_of(sounding: Sounding, camera: Camera) -> Cue:
-    """A sound where it is on the screen."""
+    """The cue of a sound, with pan and loudness from its place on the screen."""
     left, _, width, _ = camera.viewport
     across = 2.0 * (camera.to_pixels(sounding.place)[0] - left) / max(width, 1) - 1.0
     away = max(abs(across) - 1.0, 0.0) / 2.0

@@ -40,7 +40,7 @@ class Output(Protocol):
         ...
 
     def fade(self, channel: int, seconds: float) -> None:
-        """End a channel within so long [s]."""
+        """Fade a channel out within so many seconds."""
         ...
 
     def is_busy(self, channel: int) -> bool:
@@ -147,7 +147,7 @@ class Voices:
                 self._output.set_gains(hum.channel, ears(hum.gain, hum.pan))
 
     def quieten(self, now: float, seconds: float = 0.12) -> None:
-        """Let everything fade within so long [s]."""
+        """Fade all sounds out within so many seconds."""
         for channel in [*(voice.channel for voice in self._voices), *(hum.channel for hum in self._hums.values())]:
             self._output.fade(channel, seconds)
             self._fading[channel] = now + seconds + LATENCY
@@ -174,7 +174,7 @@ class Voices:
         return mine < REST_OF.get(each.note.kind, REST) or same < SAME_REST
 
     def _sweep(self, now: float) -> None:
-        """Forget what has ended."""
+        """Forget sounds that have ended."""
         self._voices = [voice for voice in self._voices if self._output.is_busy(voice.channel)]
         self._fading = {channel: until for channel, until in self._fading.items() if now < until}
         if len(self._last) > 500:

@@ -65,7 +65,7 @@ def step_of(frequency: float) -> int:
 
 
 def seconds(length: float) -> Wave:
-    """Times [s] of the samples of so long a wave."""
+    """Times [s] of the samples of a wave of that length [s]."""
     return np.arange(int(length * RATE)) / RATE
 
 
@@ -96,7 +96,7 @@ def finished(wave: Wave, attack: float) -> Wave:
 
 
 def thud(step: int, stuff: str) -> Wave:
-    """A thing of one of STUFFS that is struck."""
+    """The sound of a struck thing, made of one of STUFFS."""
     made, pitch = STUFFS[stuff], pitch_of(step)
     longest = max(decay for _, decay, _ in made.modes)
     t = seconds(5.6 * longest + 0.05)
@@ -313,13 +313,13 @@ class Sample:
 
 
 class Bank:
-    """Samples by their notes."""
+    """Keeps samples by their notes."""
 
     def __getitem__(self, note: Note) -> Sample:
         return _sample(note)
 
     def make(self, note: Note) -> None:
-        """Make a sample before it is wanted."""
+        """Make a sample before it is played."""
         self[note]
 
 

@@ -82,13 +82,13 @@ class Toy:
 
     @property
     def camera(self) -> Any:
-        """What part of the world is seen."""
+        """The camera of the toy's world."""
         return self.stage.camera
 
     # The loop.
 
     def run(self, seconds: float | None = None) -> None:
-        """Run until it is closed, or for this many seconds."""
+        """Run until the window is closed, or for this many seconds."""
         started = before = time.perf_counter()
         clock = pygame.time.Clock()
         while self.running and (seconds is None or before - started < seconds):

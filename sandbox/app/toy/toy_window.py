@@ -57,17 +57,17 @@ class ToyWindow(Display):
         return x, y
 
     def move_to(self, place: tuple[int, int]) -> None:
-        """Put it there."""
+        """Move the window."""
         if self.floats:
             with contextlib.suppress(pygame.error):
                 self.window.position = place
 
     def keep(self, **others: Any) -> None:
-        """Remember its place, and others by name."""
+        """Remember the window's place, and other values by name."""
         self.desk.keep(self.place if self.floats else None, self.window.size, **others)
 
     def close(self) -> None:
-        """Close it; its place is another's."""
+        """Close the window; its place becomes free for another toy."""
         super().close()
         self.desk.leave()
 
@@ -107,7 +107,7 @@ class Desk:
 
     @property
     def kept(self) -> dict[str, Any]:
-        """What is remembered of all toys."""
+        """The remembered values of all toys."""
         kept = preference(KEPT)
         return kept if isinstance(kept, dict) else {}
 
@@ -150,7 +150,7 @@ class Desk:
         set_preference(KEPT, kept | others)
 
     def leave(self) -> None:
-        """The toy is closed."""
+        """Close the toy."""
         if self._lock is not None:
             self._lock.release()
 

@@ -33,7 +33,7 @@ class CheckBox(Pressable):
         self._toggle = toggle
 
     def show_state(self, state: bool, is_mixed: bool) -> None:
-        """Show it ticked or not, or that the items differ."""
+        """Show the box ticked, not ticked, or mixed."""
         if (state, is_mixed) != (self.state, self.mixed):
             self.state, self.mixed = state, is_mixed
             self.repaint()

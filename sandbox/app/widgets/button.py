@@ -46,7 +46,7 @@ class Button(Written):
 
     @property
     def font(self) -> pygame.font.Font:
-        """The font of its text."""
+        """The font of the button's text."""
         return self.ui.font(self._style.size)
 
     @property

@@ -54,7 +54,7 @@ class Dialog:
         return self._ui.rect(MARGIN, top, self.inside, height)
 
     def end(self, action: Callable[[], object] | None = None) -> None:
-        """Take the page away, then do what was chosen on it."""
+        """Close the page, then carry out the chosen action."""
         self.sheet.remove()
         if action is not None:
             action()

@@ -62,7 +62,7 @@ class Field(Widget):
 
     @property
     def typed(self) -> str:
-        """What stands in the line."""
+        """The typed text."""
         return self._line.text
 
     @typed.setter
@@ -95,7 +95,7 @@ class Field(Widget):
             self.text = self.typed = text
 
     def finish(self) -> None:
-        """Take what was typed, or bring the old text back."""
+        """Take the typed text, or bring the old one back."""
         if self.typed == self.text:
             return
         before, self.text = self.text, self.typed
@@ -111,7 +111,7 @@ class Field(Widget):
         return True
 
     def revert(self) -> None:
-        """Forget what was typed."""
+        """Bring the old text back."""
         self.typed = self.text
 
     def _show(self, line: _Line) -> None:
@@ -127,7 +127,7 @@ class Field(Widget):
         self._joins = joins
 
     def insert(self, text: str) -> None:
-        """Put a text in the place of what is selected."""
+        """Put a text in the place of the selection."""
         self.composed = ""
         low, high = self.selected
         # Ends of lines, tabs and the spaces of other scripts part words too.
@@ -139,7 +139,7 @@ class Field(Widget):
             self._change(_Line(self.typed[:low] + text + self.typed[high:], end, end), joins=True)
 
     def compose(self, text: str) -> None:
-        """Show what an input method has of a text so far."""
+        """Show the unfinished text of an input method."""
         self.composed = text
         self.repaint()
 
@@ -155,7 +155,7 @@ class Field(Widget):
         pygame.key.set_text_input_rect(pygame.Rect(corner, size))
 
     def on_blur(self) -> None:
-        """Take what was typed."""
+        """Take the typed text."""
         self.composed, self._is_begun = "", False
         self._before, self._after = [], []
         self.select(0, 0)
@@ -297,7 +297,7 @@ class Field(Widget):
 
     @property
     def font(self) -> pygame.font.Font:
-        """The font of its text."""
+        """The font of the field's text."""
         return self.ui.font(TEXT_SIZE)
 
     def _x_of(self, at: int) -> int:

@@ -57,7 +57,7 @@ def font_file(bold: bool) -> Path:
 
 
 class Face(NamedTuple):
-    """A font and by how much what it draws is scaled."""
+    """A font, with the scale at which its letters are drawn."""
 
     font: pygame.font.Font
     scale: float
@@ -75,7 +75,7 @@ class Face(NamedTuple):
         return pygame.transform.smoothscale(picture, self.size(text))
 
     def size(self, text: str) -> tuple[int, int]:
-        """Width and height of such a text [pixels]."""
+        """Width and height of a text [pixels]."""
         width, height = pygame.font.Font.size(self.font, text)
         return round(self.scale * width), round(self.scale * height)
 

@@ -55,7 +55,7 @@ class Picker(Pressable):
         return surface
 
     def paint_box(self, size: tuple[int, int]) -> pygame.Surface:
-        """What the value and the chevron lie on."""
+        """The box behind the value and the chevron."""
         back = mixed(FIELD, TEXT, 0.06) if self.hovered and self.rows else FIELD
         return box(size, BoxLook(back, LINE, TEXT), self.ui.px(6), 1).copy()
 
@@ -96,16 +96,16 @@ class WordPicker(Picker):
 
     @property
     def words(self) -> list[str]:
-        """What can be chosen."""
+        """The words to choose from."""
         return [row.text for row in self.rows]
 
     @property
     def chosen(self) -> str:
-        """What is chosen."""
+        """The chosen word."""
         return self.shown.text
 
     def offer(self, words: Sequence[str], chosen: str) -> None:
-        """Offer these words, one of them chosen."""
+        """Show other words to choose from, one of them chosen."""
         self.show_value([Row(word) for word in words], Row(chosen))
 
     def show_chosen(self, word: str) -> None:

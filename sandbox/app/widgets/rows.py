@@ -151,7 +151,7 @@ class RowList(Widget):
             self.repaint()
 
     def on_wheel(self, notches: float) -> bool:
-        """Scroll, where there is more than is seen."""
+        """Scroll the list, where it is longer than its place."""
         self._scroll_to(self._offset - notches * self.ui.px(WHEEL_STEP))
         return self._bar.needed
 

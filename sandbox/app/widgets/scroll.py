@@ -50,7 +50,7 @@ class ScrollBar(Widget):
         return (tall - size) * self.offset / max(self.height - self.page, 1), size
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface | None:
-        """The thumb alone, where there is more than is seen."""
+        """The thumb alone, where the content is higher than its view."""
         if not self.needed:
             return None
         surface = pygame.Surface(size, pygame.SRCALPHA)
@@ -115,7 +115,7 @@ class _View(Widget):
         self._scroll_by, self._show_widget = scroll_by, show_widget
 
     def reveal(self, widget: Widget) -> None:
-        """Scroll so that a widget inside is seen."""
+        """Scroll to a widget inside."""
         self._show_widget(widget)
 
     def on_wheel(self, notches: float) -> bool:
@@ -152,7 +152,7 @@ class ScrollArea:
 
     @property
     def is_at_end(self) -> bool:
-        """Whether it has been scrolled as far down as it goes."""
+        """Whether the area is scrolled to its end."""
         return self._height > self.view.rect.height and self.offset >= self._height - self.view.rect.height - 1
 
     def scroll_by(self, notches: float) -> None:
@@ -160,7 +160,7 @@ class ScrollArea:
         self.scroll_to(self.offset - notches * self._ui.px(WHEEL_STEP))
 
     def show_widget(self, widget: Widget) -> None:
-        """Bring a widget that is in it into sight."""
+        """Scroll to a widget inside."""
         gap = self._ui.px(REVEAL_GAP)
         top, bottom = (edge - self.content.rect.top for edge in (widget.rect.top, widget.rect.bottom))
         if top - gap < self.offset:
@@ -169,6 +169,6 @@ class ScrollArea:
             self.scroll_to(bottom + gap - self.view.rect.height)
 
     def remove(self) -> None:
-        """Take it away, with all that is in it."""
+        """Remove the area with its content."""
         self.bar.remove()
         self.view.remove()

@@ -76,7 +76,7 @@ class Slider(Draggable):
         self._done()
 
     def on_wheel(self, notches: float) -> bool:
-        """After a click on it, move by a fine step a notch."""
+        """Move by a fine step a notch, once the slider was clicked."""
         if not (self.in_hand and self.state.enabled):
             return False
         self._step(FINE_KEY_STEP * notches)

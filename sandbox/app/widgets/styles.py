@@ -28,7 +28,7 @@ _HEADING = tone("ffffff", "1c2430")
 
 
 class BoxLook(NamedTuple):
-    """Colours of a box, and of what is written on it."""
+    """Colours of a box and of its text."""
 
     back: Colour
     rim: Colour

@@ -43,7 +43,7 @@ def text_height(text: str, font: pygame.font.Font, widest: int) -> int:
 
 
 class Written(Widget):
-    """A widget with a text on it."""
+    """A widget with a text."""
 
     text = ""
 
@@ -65,7 +65,7 @@ class Label(Written):
 
     @property
     def font(self) -> pygame.font.Font:
-        """The font of its text."""
+        """The font of the label."""
         return self.ui.font(self.style.size, self.style.is_bold)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:

@@ -203,7 +203,7 @@ class Ui(WindowLayout):
         return list(self.walk())
 
     def _lay_out(self) -> None:
-        """Find out what is seen of each widget."""
+        """Find the visible part of each widget."""
         assert self.root is not None
         sheets = {sheet.panel for sheet in self._sheets}
         self._seen, self.is_laid = [], True
@@ -357,7 +357,7 @@ class Ui(WindowLayout):
         return [widget for widget in self.ring() if isinstance(widget, Button)]
 
     def ring(self) -> list[Widget]:
-        """What Tab goes through: the widgets of the topmost page."""
+        """The widgets that Tab goes through: those of the topmost page."""
         return [each for each in self._page if each.is_focusable and each.visible and each.is_enabled]
 
     def _move_focus(self, by: int) -> None:

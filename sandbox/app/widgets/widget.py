@@ -159,7 +159,7 @@ class Widget:
     # Where it is.
 
     def move_to(self, corner: Pixel) -> None:
-        """Put it at another place in what holds it."""
+        """Move the widget inside its holder."""
         if corner != self.place.topleft:
             by = corner[0] - self.place.left, corner[1] - self.place.top
             self.place.topleft = corner
@@ -172,7 +172,7 @@ class Widget:
             child._shift(by)
 
     def resize(self, size: tuple[int, int]) -> None:
-        """Give it another size."""
+        """Give the widget another size."""
         if size != self.place.size:
             self.place.size = size
             self.rect = pygame.Rect(self.rect.topleft, size)
@@ -180,10 +180,10 @@ class Widget:
             self.ui.is_laid = False
 
     def reveal(self, widget: "Widget") -> None:
-        """Bring one of the widgets in it into sight."""
+        """Bring one of the widgets inside into sight."""
 
     def remove(self) -> None:
-        """Take it away, with all that is in it."""
+        """Remove the widget, with all inside."""
         if self.is_there and self.parent is not None:
             self.parent.children.remove(self)
         self._end()
@@ -196,7 +196,7 @@ class Widget:
         self.clear()
 
     def clear(self) -> None:
-        """Take away all that is in it."""
+        """Remove all widgets inside."""
         for child in self.children:
             child._end()
         self.children.clear()
@@ -223,7 +223,7 @@ class Widget:
             self.repaint()
 
     def on_wheel(self, notches: float) -> bool:
-        """React to the wheel, turned over it; True: it is used."""
+        """React to the wheel; True: the event is used."""
         return False
 
     def on_focus(self) -> None:
@@ -237,7 +237,7 @@ class Widget:
             self.repaint()
 
     def press_key(self, event: pygame.event.Event) -> bool:
-        """React to a key while it has the keyboard; True: it is used."""
+        """React to a key while the widget has the keyboard; True: the event is used."""
         return False
 
 
@@ -270,7 +270,7 @@ class Draggable(Widget):
     is_focusable = True
 
     def can_drag(self) -> bool:
-        """Whether the mouse may take it."""
+        """Whether the mouse may drag the widget."""
         return True
 
     def on_press(self, at: Pixel, clicks: int) -> bool:

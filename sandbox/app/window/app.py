@@ -92,7 +92,7 @@ class App:
     # What is on the screen.
 
     def open(self, request: StartRequest) -> None:
-        """Show what the program was started for."""
+        """Open the level, recording or editor that the program was started for."""
         if request.replay is not None:
             self.start(Playback(request.replay.level, request.replay))
         elif request.level is not None:
@@ -198,7 +198,7 @@ class App:
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
     def close_gallery(self) -> None:
-        """Back to the screen, where there is one."""
+        """Go back to the screen, where there is one."""
         if self.gallery is not None:
             self.gallery.close()
             self.gallery = None
@@ -230,7 +230,7 @@ class App:
         }
 
     def _first_actions(self) -> dict[str, Callable[[], object]]:
-        """What can be done before there is a screen."""
+        """Actions that are possible before there is a screen."""
         return {"open": self.files.ask_to_open, "recordings": lambda: self.open_gallery("recordings")}
 
     def start_lesson(self) -> None:
@@ -269,12 +269,12 @@ class App:
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
-        """What can be done now, by the names of the table of shortcuts."""
+        """Actions that are possible now, by the names of the table of shortcuts."""
         of_play = self._play_actions() if self.mode == "play" else {}
         return self._own_actions | of_play | (self._first_actions() if self.screen is None else self.screen.actions)
 
     def act(self, action: str) -> None:
-        """Do what a key or button asks for, where the screen knows it."""
+        """Carry out the action of a key or button, where the screen knows it."""
         do = self.actions.get(action)
         if do is not None:
             do()

@@ -225,7 +225,7 @@ class Input:
             screen.open_menu(pixel)
 
     def _clicks(self, pixel: Pixel) -> int:
-        """Which press of a double click this is, 1 or 2."""
+        """1 for a single press, 2 for the second of a double click."""
         before, now = self._last_press, pygame.time.get_ticks()
         is_second = before is not None and now - before[0] <= 1000 * DOUBLE_SECONDS and math.dist(before[1], pixel) <= 6
         self._last_press = None if is_second else (now, pixel)

@@ -23,7 +23,7 @@ TITLE_SIZE, LINE_SIZE = 30, 14
 
 
 class _Work(threading.Thread):
-    """Imports the app and finds out what is asked of it."""
+    """Imports the app and reads the request on a thread of its own."""
 
     def __init__(self, find: Callable[[], StartRequest]) -> None:
         super().__init__(daemon=True)

@@ -34,7 +34,7 @@ class Subcommand(Generic[Options]):
         declare(parser, self.options)
 
     def run(self, parsed: argparse.Namespace) -> int:
-        """Carry it out, as its own parser has read it."""
+        """Run the subcommand with its parsed options."""
         return self.action(read(parsed, self.options))
 
 
@@ -86,19 +86,19 @@ def option_or(
     help: str | None = None,
     choices: Sequence[T] | None = None,
 ) -> T:
-    """An option that has a value where it is left out."""
+    """An option with a default."""
     found: T = _option(type=parse, default=default, metavar=metavar, help=help, choices=choices)
     return found
 
 
 def needed_option(parse: Callable[[str], T], *names: str, metavar: str | None = None, help: str | None = None) -> T:
-    """An option that must be there."""
+    """A required option."""
     found: T = _option(*names, type=parse, required=True, metavar=metavar, help=help)
     return found
 
 
 def repeated_option(parse: Callable[[str], T], metavar: str | None = None, help: str | None = None) -> list[T]:
-    """An option that may be there several times."""
+    """An option that may be given several times."""
     found: list[T] = _option(type=parse, action="append", default=[], metavar=metavar, help=help)
     return found
 
@@ -124,7 +124,7 @@ def declare(parser: argparse.ArgumentParser, options: type[Any]) -> None:
 
 
 def read(parsed: argparse.Namespace, options: type[T]) -> T:
-    """What a parser that was told of these options has found."""
+    """The options of a dataclass from what its parser has read."""
     return options(**{each.name: getattr(parsed, each.name) for each in fields(options)})  # type: ignore[arg-type]
 
 
@@ -140,7 +140,7 @@ class LookOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class WindowOptions(LookOptions):
-    """What the app's own window takes."""
+    """Options of the app's window."""
 
     states: bool = flag("say in the window's title what happens, for programs that follow it")
 

@@ -436,7 +436,7 @@ def _with_springs(level: Level, world: LevelWorld, names: dict[str, str]) -> Lev
 
 
 def _reference(name: str, names: dict[str, str]) -> str:
-    """What a particle of the world is called in the level."""
+    """The name in the level of a particle of the world."""
     owner, _, rest = name.partition(".")
     return names.get(name) or f"{names.get(owner, owner)}.{rest}" if rest else name
 

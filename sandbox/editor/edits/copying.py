@@ -57,7 +57,7 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
 
 
 def put_in(document: Document, found: Level, at: Point | None = None) -> Document:
-    """Add what another level holds, as `paste` does."""
+    """Add the things of another level, as `paste` does."""
     box = make_scene(found).bounds()
     if at is not None and box is not None:
         found = shifted(found, at[0] - (box[0] + box[2]) / 2.0, at[1] - (box[1] + box[3]) / 2.0)

@@ -52,7 +52,7 @@ def free_ids(taken: set[str], names: Iterable[str]) -> list[str]:
 
 
 def owner_of(reference: str) -> str:
-    """Id of what a reference speaks of: of a particle its body."""
+    """Id of the thing that a reference names: of a particle its body."""
     return reference.partition(".")[0]
 
 

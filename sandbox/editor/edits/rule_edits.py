@@ -38,12 +38,12 @@ def read_rule(data: Mapping[str, Any]) -> RuleDef:
 
 
 def plain(rule: RuleDef) -> dict[str, Any]:
-    """A rule as plain values, without those that go without saying."""
+    """A rule as plain values, without defaults."""
     return rule.model_dump(exclude_defaults=True)
 
 
 def set_rules(document: Document, rules: Sequence[RuleDef]) -> Document:
-    """Give the level other rules. Raises EditError."""
+    """Replace the level's rules. Raises EditError."""
     return replace(document, level=checked(replaced(document.level, rules=tuple(rules))))
 
 

@@ -35,14 +35,14 @@ class TrussOptions(LineOptions):
 
 
 class BridgeDrawing(LineDrawing[TrussOptions]):
-    """A bridge along its top row."""
+    """Draws a bridge along its top row."""
 
     defaults = TrussOptions()
     kind = "bridge"
     start_hint = "Drag along the top of the bridge, or click both ends"
 
     def fitting(self, points: list[Snap]) -> int:
-        """How many cells of about 0.5 m there is room for."""
+        """Number of cells of about 0.5 m that fit."""
         return fitting_count(length(points), CELL_LENGTH, *CELLS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def fitted(polygon: Loop, sized: dict[str, Any]) -> dict[str, Any]:
 
 
 class JellyDrawing(BodyDrawing[JellyOptions]):
-    """A jelly whose grid fits its size."""
+    """Draws a jelly whose grid fits its size."""
 
     defaults = JellyOptions()
     kind = "jelly"
@@ -85,7 +85,7 @@ class JellyDrawing(BodyDrawing[JellyOptions]):
 
 
 class BoxDrawing(JellyDrawing):
-    """A box of jelly; its corner goes to the grid at any angle."""
+    """Draws a box of jelly; its corner snaps to the grid at any angle."""
 
     anchor = None
 
@@ -130,7 +130,7 @@ class PolygonDrawing(OutlineDrawing[JellyOptions], JellyDrawing):
     """A polygon of jelly."""
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """Corners about the middle of their box."""
+        """Fields of the polygon: its corners about the middle of their box."""
         corners = [point.point for point in points]
         fault = self.fault(corners)
         if fault:
@@ -158,7 +158,7 @@ class JellyEditing(BodyEditing[JellyDef]):
         return "jelly that is round or turned"
 
     def can_stretch(self) -> bool:
-        """Whether its sides lie along the axes, and it is not round."""
+        """Whether the jelly can be stretched: its sides lie along the axes, and it is not round."""
         if isinstance(self.body.shape, CircleShape):
             return False
         return abs(math.remainder(self.body.angle, math.pi / 2.0)) <= SQUARE

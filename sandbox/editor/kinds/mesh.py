@@ -7,7 +7,7 @@ from sandbox.level.kinds.mesh import MeshDef
 
 
 class MeshEditing(BodyEditing[MeshDef]):
-    """A mesh goes where its particles go."""
+    """Edits a mesh, which is placed by its particles."""
 
     formless = frozenset({"masses", "velocities", "bending"})
 

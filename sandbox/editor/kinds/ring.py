@@ -53,7 +53,7 @@ class RingDrawing(RoundDrawing[RingOptions]):
         return index == 1
 
     def fitting(self, points: list[Snap]) -> int:
-        """How many parts of about 0.25 m there is room for."""
+        """Number of segments of about 0.25 m that fit."""
         return fitting_count(2.0 * math.pi * length(points), PART_LENGTH, *PARTS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:

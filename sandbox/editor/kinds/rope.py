@@ -44,7 +44,7 @@ class RopeOptions(LineOptions):
 
 
 class RopeDrawing(LineDrawing[RopeOptions]):
-    """A rope; slack makes it longer than the way from end to end."""
+    """Draws a rope; slack makes it longer than the distance of its ends."""
 
     defaults = RopeOptions()
     kind = "rope"
@@ -52,7 +52,7 @@ class RopeDrawing(LineDrawing[RopeOptions]):
     start_hint = "Drag from the rope's start to its end, or click both"
 
     def fitting(self, points: list[Snap]) -> int:
-        """How many links of about 0.25 m there is room for."""
+        """Number of segments of about 0.25 m that fit."""
         return fitting_count(length(points), LINK_LENGTH, *LINKS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
@@ -64,7 +64,7 @@ class RopeDrawing(LineDrawing[RopeOptions]):
 
 
 class RopeEditing(BodyEditing[RopeDef]):
-    """A rope goes where its ends go."""
+    """Edits a rope, which is placed by its ends."""
 
     tools: ClassVar = (EditorTool("rope", "R", "Rope", RopeDrawing),)
     formless = frozenset({"particle_mass", "end_mass", "rest_length", "pin", "bending"})

@@ -28,5 +28,5 @@ BODY_TOOLS = tuple(tool for each in EDITING.values() for tool in each.tools)
 
 
 def editing(body: BodyDef) -> BodyEditing[Any]:
-    """What the editor adds to a body."""
+    """The editing object of a body, by its kind."""
     return EDITING[body.type](body)

@@ -111,7 +111,7 @@ def called(level: Level, item: Item) -> str:
 
 
 def called_spring(scene: Scene, spring: int) -> str:
-    """A spring as sentences name it."""
+    """The name of a spring in sentences."""
     item = scene.items[int(scene.spring_item[spring])]
     return called(scene.level, item) if item.kind == "spring" else scene.spring_name(spring)
 
@@ -255,7 +255,7 @@ def deletion(items: Selection) -> Remedy:
 
 
 def joint(a: str, b: str) -> Remedy:
-    """Make one of two particles."""
+    """The remedy that welds two particles."""
     return Remedy("Join them", lambda document: weld(document, a, b))
 
 

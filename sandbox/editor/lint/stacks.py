@@ -73,7 +73,7 @@ def _boxes(level: Level, scene: Scene) -> Iterator[_Box]:
 
 
 def _columns(boxes: list[_Box], may_touch: bool) -> Iterator[list[_Box]]:
-    """Boxes that lie on one another, from the lowest up."""
+    """Stacks of boxes, each from the lowest up."""
     remaining = sorted(boxes, key=lambda box: box.low)
     while remaining:
         column = [remaining.pop(0)]

@@ -114,7 +114,7 @@ def _part(annotation: Any) -> type[BaseModel] | None:
 
 
 def title_of(field: str) -> str:
-    """What a field is called."""
+    """The title of a field in forms."""
     return _TITLES.get(field, field.replace("_", " ").capitalize())
 
 

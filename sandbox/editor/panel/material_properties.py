@@ -45,7 +45,7 @@ def materials_of(level: Level) -> dict[str, Material]:
 
 
 def material_sections(level: Level, name: str) -> tuple[Section, ...]:
-    """What can be changed of a material."""
+    """The properties of a material, in sections."""
     material = materials_of(level)[name]
     coefficients: list[Property] = []
     limits: list[Property] = []
@@ -135,7 +135,7 @@ def _set_law(name: str, document: Document, law: str) -> Document:
 
 
 def look_properties(name: str, material: Material) -> list[Property]:
-    """What can be changed of how things of a material look."""
+    """Properties of the look of a material."""
 
     def change(document: Document, new: Callable[[Any], Any]) -> Document:
         now = document.level.materials.get(name, NissenMaterial())

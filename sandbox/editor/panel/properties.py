@@ -91,7 +91,7 @@ def _section_of(field: str) -> str:
 
 
 def _summary(kinds: Iterable[type], parts: Sequence[Definition]) -> str:
-    """What is selected, in words."""
+    """The selection in words."""
     counts = Counter(map(type, parts))
     words = []
     for kind, number in counts.items():
@@ -215,7 +215,7 @@ def _set_flags(
 
 
 def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
-    """Facts of a single item that its fields do not say."""
+    """Facts about a single item beside its fields."""
     facts = []
     if isinstance(part, SpringDef):
         facts.append(("number", "Number", f":{item.key}", "The spring's name in commands and recordings."))

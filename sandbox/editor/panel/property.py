@@ -32,7 +32,7 @@ Change = Callable[[Document, Callable[[Any], Any]], Document]
 
 
 class Mixed(Enum):
-    """What stands for a value where the items differ."""
+    """Stands for the value where items differ."""
 
     MIXED = "mixed"
 
@@ -78,7 +78,7 @@ class Property:
 
     @property
     def step(self) -> str:
-        """What a change of it is called in the history."""
+        """Name of the property's change in the history."""
         return self.label or self.about.title
 
     def set(self, document: Any, value: Any) -> Any:
@@ -164,7 +164,7 @@ def _degrees(angle: float) -> float:
 
 
 def same(values: Iterable[Any]) -> Any:
-    """The value that all of them are, else MIXED."""
+    """The value that all items share, else MIXED."""
     found = list(values)
     return found[0] if found.count(found[0]) == len(found) else MIXED
 
@@ -179,7 +179,7 @@ def in_range(about: FieldInfo, value: float) -> float:
 
 
 def with_axes(value: Sequence[float | None], old: Sequence[float]) -> tuple[float, ...]:
-    """A pair of numbers with those of a value that are given."""
+    """A pair of numbers in which those that are None stay as they were."""
     return tuple(before if new is None else new for new, before in zip(value, old, strict=True))
 
 

@@ -157,7 +157,7 @@ def touched_text(collides: bool | Sequence[str]) -> str:
 
 
 def read_touched(title: str, text: str) -> bool | list[str]:
-    """What a text of `touched_text` stands for. Raises EditError."""
+    """The pairs that a text of `touched_text` lists. Raises EditError."""
     words = read_words(title, text)
     if text.strip().casefold() in (EVERYTHING, NOTHING, ""):
         return text.strip().casefold() == EVERYTHING

@@ -75,7 +75,7 @@ class Autosave:
         self.note(level, orphan.edited, "Recover")
 
     def settle(self) -> None:
-        """Wait until what was noted is written, or cannot be."""
+        """Wait until the noted edit is written, or cannot be."""
         self._writer.settle()
 
     def close(self) -> None:
@@ -159,7 +159,7 @@ def orphans(folder: Path | None = None) -> list[Orphan]:
 
 
 def _orphan(path: Path) -> Orphan:
-    """What an autosave says of itself. Raises StorageError."""
+    """An autosave with the facts of its first line. Raises StorageError."""
     first, rest = _halves(path)
     try:
         head = json.loads(first)

@@ -38,11 +38,11 @@ class BackgroundWriter(Generic[Content]):
 
     @property
     def has_begun(self) -> bool:
-        """Whether anything was noted since it was closed."""
+        """Whether anything was noted since the writer was closed."""
         return self._thread is not None
 
     def note(self, path: Path, content: Content) -> None:
-        """Keep this at a path from now on; returns at once."""
+        """Write this content to a path soon, in place of what was noted before; returns at once."""
         with self._changed:
             self._drop(path)
             self._noted += 1
@@ -71,7 +71,7 @@ class BackgroundWriter(Generic[Content]):
             self._changed.wait_for(lambda: not self._untried)
 
     def close(self) -> None:
-        """Write what was noted last and end."""
+        """Write the contents noted last and end."""
         with self._changed:
             self.is_closing = True
             # What could not be written has a last chance.

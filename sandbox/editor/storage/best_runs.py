@@ -35,7 +35,7 @@ class Result:
 
     @property
     def seconds(self) -> float:
-        """The time that it took [s]."""
+        """Time of the run [s]."""
         return self.ticks / self.rate
 
     def is_better_than(self, other: "Result | None") -> bool:

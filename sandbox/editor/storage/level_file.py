@@ -157,7 +157,7 @@ class LevelFile:
         return False
 
     def close(self) -> None:
-        """Let other windows have the file."""
+        """Unlock the file, for other windows."""
         _released(self._lock)
         self._lock = None
 
@@ -230,7 +230,7 @@ def _holder_path(lock: FileLock) -> Path:
 
 
 def _holder(lock: FileLock) -> str:
-    """Who has a lock, as far as they said so."""
+    """The program that has a lock, as far as it wrote its name."""
     try:
         holder = json.loads(_holder_path(lock).read_bytes())
         pid, host, since = holder["pid"], holder["host"], holder["since"]
@@ -260,7 +260,7 @@ class PartFile:
 
     @property
     def level(self) -> Level | None:
-        """What is in it; None where it is broken."""
+        """The part's level; None where the file is broken."""
         return _read(self.path, self.stamp)[0]
 
     @property

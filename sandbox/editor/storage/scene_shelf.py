@@ -40,7 +40,7 @@ class SceneShelf:
             self._writer.note(self.present, (scene, source))
 
     def set_aside(self, scene: RunScene, source: Path | None) -> None:
-        """Keep the present run so for good: what comes is another one."""
+        """Keep the present run for good in this state: the next one is another."""
         if scene.script:
             self.note(scene, source)
             self._aside[self.present] = scene
@@ -65,7 +65,7 @@ class SceneShelf:
         return self._new_path() if self.present in self._aside else self.present
 
     def others(self) -> list[Path]:
-        """What is kept, newest first, but the run that goes on here."""
+        """The kept runs, newest first, without the present one."""
         return [path for path in kept_scenes(self.folder) if path != self.present or path in self._aside]
 
     def settle(self) -> None:
@@ -73,7 +73,7 @@ class SceneShelf:
         self._writer.settle()
 
     def close(self) -> None:
-        """Write what was noted last and end."""
+        """Write the scene noted last and end."""
         self._writer.close()
 
     def _new_path(self) -> Path:

@@ -143,7 +143,7 @@ class LineDrawing(BodyDrawing[AnyLineOptions], Generic[AnyLineOptions]):
         }
 
     def segments(self, points: list[Snap]) -> int:
-        """How many parts it has."""
+        """Number of segments."""
         return self.fitting(points) if self.options.segments is None else self.options.segments
 
     def sizes(self, points: list[Snap]) -> str:

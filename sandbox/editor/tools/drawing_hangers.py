@@ -29,7 +29,7 @@ WHERE = "on a rope, a bridge or a girder"
 
 @dataclass(frozen=True)
 class HangersOptions(Options):
-    """How many, and of what."""
+    """Options of hangers: how many, and of what."""
 
     count: int | None = count_option(
         "hangers", "Number of hangers; empty = one for each particle of the coarser side.", 1
@@ -78,7 +78,7 @@ class HangersDrawing(Drawing[HangersOptions]):
         return self._most
 
     def sizes(self, points: list[Snap]) -> str:
-        """How many there are."""
+        """Number of hangers, in words."""
         return "" if self._ghost_fault else f"{self._made} {'hanger' if self._made == 1 else 'hangers'}"
 
     def _hung(self, document: Document, pairs: list[tuple[Snap, Snap]]) -> Document:

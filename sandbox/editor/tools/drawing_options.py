@@ -38,7 +38,7 @@ class OptionInfo:
 
 
 def option(default: Any, about: OptionInfo) -> Any:
-    """An option and what a person is told of it."""
+    """A field of options with its label, limits and tooltip."""
     return field(default=default, metadata={"about": about})
 
 

@@ -29,7 +29,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
 
     @property
     def outline(self) -> list[Point]:
-        """The corners so far, and the pointer."""
+        """The corners so far, and the pointer as the next."""
         return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:

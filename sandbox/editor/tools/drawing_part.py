@@ -27,7 +27,7 @@ class PartDrawing(Drawing[PartOptions]):
 
     @property
     def hint(self) -> str:
-        """What a click would do, or why it cannot be done."""
+        """A line that says what a click would do, or why it cannot be done."""
         part = self.options.part
         fault = self._fault or self._ghost_fault
         return fault or ("Choose a part on the page Parts" if part is None else f"Click where it goes: {part.name}")
@@ -43,7 +43,7 @@ class PartDrawing(Drawing[PartOptions]):
         self.options = replace(self.options, part=part)
 
     def joins(self, index: int) -> bool:
-        """Never: a part lies beside what it is put on."""
+        """False: a part lies beside what it is put on."""
         return False
 
     def ghost(self, document: Document) -> Document | None:

@@ -107,7 +107,7 @@ class PinDrawing(Drawing[PinOptions]):
 
     @property
     def hint(self) -> str:
-        """What a click would do."""
+        """A line that says what a click would do."""
         return self._offer
 
     def placed(self, document: Document, points: list[Snap]) -> Document:

@@ -30,7 +30,7 @@ class SurfaceOptions(Options):
 
 @dataclass(frozen=True)
 class GroundOptions(SurfaceOptions):
-    """A piece of terrain: its surface may run, too."""
+    """Options of terrain: its surface may run like a belt."""
 
     belt: float = option(0.0, OptionInfo(
         "number", "belt", "How fast its surface runs to the right of who stands on it.", "m/s", -BELT_LIMIT, BELT_LIMIT

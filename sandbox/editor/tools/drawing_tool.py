@@ -178,11 +178,11 @@ class Drawing(Generic[AnyOptions]):
     # ---- what each kind of drawing says
 
     def placed(self, document: Document, points: list[Snap]) -> Document:
-        """The document with what the points describe. Raises EditError."""
+        """The document with the body that the points describe. Raises EditError."""
         raise NotImplementedError
 
     def sizes(self, points: list[Snap]) -> str:
-        """Sizes and counts of what is drawn, in words."""
+        """Sizes and counts of the drawing, in words."""
         return ""
 
     def fitting(self, points: list[Snap]) -> int:
@@ -236,7 +236,7 @@ class EditorTool:
 
     @property
     def action(self) -> str:
-        """The action that takes it up."""
+        """The action that takes the tool up."""
         return f"tool_{self.name}"
 
     @property

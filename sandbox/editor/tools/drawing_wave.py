@@ -43,7 +43,7 @@ class WaveDrawing(Drawing[WaveOptions]):
         return False
 
     def ghost(self, document: Document) -> Document | None:
-        """Nothing is added; why it cannot be done is said before."""
+        """None: nothing is added; `hint` says why it cannot be done."""
         points = self._so_far()
         self._ghost_fault = ""
         if self._sound(points):
@@ -60,7 +60,7 @@ class WaveDrawing(Drawing[WaveOptions]):
         return replace(wave_along(document, start, end, self.options.waves), selection=document.selection)
 
     def sizes(self, points: list[Snap]) -> str:
-        """How many muscles there are, and how many waves."""
+        """Number of muscles and of waves, in words."""
         muscles = f"{self._count} {'muscle' if self._count == 1 else 'muscles'}"
         return "" if self._ghost_fault else f"{muscles}, waves: {self.options.waves:g}"
 

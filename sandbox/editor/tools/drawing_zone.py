@@ -16,7 +16,7 @@ from sandbox.level.format.quantities import Point
 
 @dataclass(frozen=True)
 class ZoneOptions(Options):
-    """What a drag makes."""
+    """Options of a zone: its shape."""
 
     circle: bool = flag_option(False, "circle", "A drag draws a circle, from its centre to its rim, in place of a box.")
 
@@ -38,12 +38,12 @@ class ZoneDrawing(OutlineDrawing[ZoneOptions]):
 
     @property
     def outline(self) -> list[Point]:
-        """The corners of a polygon so far; a drag has its ghost."""
+        """The corners of a polygon so far; empty for a drag, which has its ghost."""
         return [] if self._drags else super().outline
 
     @property
     def hint(self) -> str:
-        """What to do next; during a drag what it makes."""
+        """A line that says what to do next, or during a drag what it makes."""
         if self._drags:
             return "Release at the rim" if self.options.circle else "Release at the opposite corner"
         if not self.points and self.options.circle:

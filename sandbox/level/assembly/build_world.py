@@ -177,5 +177,5 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
 
 
 def levels_of(joined: Iterable[Joined]) -> list[JoinedLevel]:
-    """What joined a world of a level, as a snapshot keeps it."""
+    """Levels that joined a world, as its snapshot keeps them."""
     return [each for each in joined if isinstance(each, JoinedLevel)]

@@ -106,7 +106,7 @@ class Joiners:
         )
 
     def _names(self, number: Mapping[str, int]) -> KitNames:
-        """Names of its rows; number: of each body by its id."""
+        """Names of the level's rows; number: of each body by its id."""
 
         def split(name: str, mark: str) -> tuple[int, str]:
             body, _, text = name.partition(mark)

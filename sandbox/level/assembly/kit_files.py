@@ -152,7 +152,7 @@ def read(data: Any) -> Kit:
 
 
 def _with_whole_numbers(value: Any) -> Any:
-    """What JSON said, where 2.0 is 2, as it is in a page."""
+    """A value of JSON in which 2.0 is 2, as it is in a page."""
     if isinstance(value, float) and value.is_integer() and abs(value) <= _SAFE:
         return int(value)
     if isinstance(value, Mapping):

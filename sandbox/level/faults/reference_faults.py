@@ -84,7 +84,7 @@ def _check_faults(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]
 
 
 class MetricAsked(Protocol):
-    """What measures a metric: a check, or the question of a rule."""
+    """A check or a question of a rule, which asks for a metric."""
 
     metric: Any
     at_most: float | None

@@ -24,7 +24,7 @@ _TAKES: dict[Asks, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class _RuleNames:
-    """What rules name, by kind."""
+    """Names that rules may use, by kind."""
 
     layout: Layout
     zones: tuple[str, ...]

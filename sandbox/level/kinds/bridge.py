@@ -28,7 +28,7 @@ class BridgeDef(BodyDef):
 
 
 class Bridge(Expansion[BridgeDef]):
-    """Two rows, one below the other."""
+    """Two rows of particles, one below the other, with diagonals."""
 
     model = BridgeDef
     plural = "bridges"

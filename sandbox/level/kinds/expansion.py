@@ -116,7 +116,7 @@ class Expansion(Generic[Body]):
 
     @property
     def bending(self) -> BendingDef | None:
-        """The angular springs between its springs."""
+        """Stiffness of the angles between springs, if the body has any."""
         return None
 
     @property

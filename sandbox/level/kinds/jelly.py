@@ -202,7 +202,7 @@ class Jelly(Expansion[JellyDef]):
         return both[(both >= 0).all(axis=1)]
 
     def hull(self) -> Pairs:
-        """The outline, unless one of its springs is cut."""
+        """The jelly's outline, unless one of its springs is cut."""
         return NO_HULL if self.body.cut else outline_of(self.edges)
 
     def faults(self, path: str) -> Iterator[Fault]:

@@ -51,7 +51,7 @@ class Mesh(Expansion[MeshDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """The lengths of its lists."""
+        """Number of particles and of springs: the lengths of the lists."""
         return len(self.body.particles), len(self.body.springs)
 
     @cached_property

@@ -60,7 +60,7 @@ class Ring(Expansion[RingDef]):
 
     @property
     def inflation(self) -> float:
-        """Area that it keeps, as a multiple of the area of its form."""
+        """Area that the ring keeps, as a multiple of the area of its form."""
         return 1.0 if self.body.inflation is None else self.body.inflation
 
     @property

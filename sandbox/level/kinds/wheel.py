@@ -40,7 +40,7 @@ class WheelDef(BodyDef):
 
 
 class Wheel(Expansion[WheelDef]):
-    """A hub and two rings about it."""
+    """A hub and two rings of particles about it."""
 
     model = WheelDef
     plural = "wheels"

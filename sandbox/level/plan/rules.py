@@ -242,7 +242,7 @@ def _things(level: Level, plan: Plan) -> dict[str, int]:
 
 
 def zones_of(zones: Sequence[ZoneDef]) -> Zones:
-    """Zones as kernels read them."""
+    """Zones in the arrays of kernels."""
     kinds, shapes, firsts = [], [], [0]
     corners: list[Point] = []
     for zone in zones:

@@ -71,7 +71,7 @@ def salvage(data: bytes, source: str) -> tuple[Level | None, list[str]]:
 
 
 def _read(data: bytes, faults: list[Fault]) -> dict[str, Any] | None:
-    """The plain JSON of a level of this version, or None, and why."""
+    """A level's plain JSON, converted to this version, or None; why goes to `faults`."""
     data = data.removeprefix(_BYTE_ORDER_MARK)
     too_long = ("", f"is larger than {FILE_LIMIT // 1024 // 1024} MiB") if len(data) > FILE_LIMIT else None
     hostile = too_long or scan(data)

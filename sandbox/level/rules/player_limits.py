@@ -100,7 +100,7 @@ class PlayerLimits(Description):
         return next((deed for deed in self.budgets if kind in MEANINGS[deed].counting), "")
 
     def row(self, deed: str, count: int) -> int:
-        """The row of a budget among so many counters."""
+        """The counter's row of a budget, behind `count` others."""
         return count - len(self.budgets) + list(self.budgets).index(deed)
 
 

@@ -97,12 +97,12 @@ class QuestionDef(Description):
 
     @property
     def asked(self) -> tuple[Asks, ...]:
-        """The fields of ASKS that it has: one, where it is sound."""
+        """The fields of ASKS that the question has: one, where it is sound."""
         return tuple(name for name in ASKS if getattr(self, name) is not None)
 
     @property
     def members(self) -> tuple["QuestionDef", ...]:
-        """The questions that it asks in turn."""
+        """The questions inside the question."""
         return self.all or self.any or self.none or ()
 
 
@@ -175,7 +175,7 @@ class ActionDef(Description):
 
     @property
     def done(self) -> tuple[Does, ...]:
-        """The fields of DOES that it has: one, where it is sound."""
+        """The fields of DOES that the action has: one, where it is sound."""
         return tuple(name for name in DOES if getattr(self, name) not in (None, False))
 
 

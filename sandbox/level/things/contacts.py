@@ -98,7 +98,7 @@ class ContactListener:
 
 
 def _hardest(world: LevelWorld, pairs: set[Pair]) -> list[Contact]:
-    """Of each of these pairs its contact of the largest impulse."""
+    """Of each of these pairs the contact with the largest impulse."""
     found: dict[Pair, Contact] = {}
     for each in _contacts(world, pairs):
         known = found.get(each.pair)

@@ -183,7 +183,7 @@ def _colours(world: LevelWorld) -> list[int]:
 
 
 def _say(said: dict[str, int], name: str, *looks: BodyLook | ParticleLook | None) -> None:
-    """Note the colour of the first of these looks that has one."""
+    """Note the colour of the first look that has one."""
     colour = next((look.colour for look in looks if look is not None and look.colour), None)
     if colour is not None:
         said[name] = colour_of(colour)

@@ -130,7 +130,7 @@ class MotorReading(NamedTuple):
 
     @property
     def share(self) -> float:
-        """The share of its torque that is in use, 0..1."""
+        """The fraction of its largest torque that the motor gives, 0..1."""
         return abs(self.torque) / self.limit if self.limit > 0.0 else 0.0
 
     @property

@@ -196,7 +196,7 @@ class Dissipation:
             self._before = total_energy(world) if changed or self._after is None else self._after
 
     def after(self, world: World) -> None:
-        """Look at it again after the tick."""
+        """Take in the world after the tick."""
         self._after = None
         if self._before is not None:
             self._after = total_energy(world)
@@ -218,7 +218,7 @@ def _lay_out(world: World) -> Any:
 
 
 class WaterPlace(NamedTuple):
-    """A world's state, and where what it displaces is put."""
+    """A world's state, and scratch for its water's displacers."""
 
     state: State
     water: Water

@@ -448,6 +448,6 @@ def form_of_spring(arena: Arena, pointer: Bundle[Commanded], spring: int) -> int
 
 @kernel
 def solve(pointer: Bundle[Commanded], wanted: Slots) -> float:
-    """Solve by other choices from now on, see `solve_by`."""
+    """Change solver and substeps, see `solve_by`."""
     world = unpack(pointer)
     return solve_by(world.state, world.choices, wanted)

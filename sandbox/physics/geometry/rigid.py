@@ -49,7 +49,7 @@ class FormFit(NamedTuple):
 
 @inlined_kernel
 def with_point(sums: WeightedSums, m: float, x: float, y: float, u: float, v: float) -> WeightedSums:
-    """Sums with one more weight and its vectors."""
+    """The sums with one more point of weight m and its vectors."""
     return WeightedSums(sums.weight + m, sums.x + m * x, sums.y + m * y, sums.u + m * u, sums.v + m * v)
 
 

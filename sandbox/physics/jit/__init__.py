@@ -118,7 +118,7 @@ def _wish() -> str:
 
 
 def say(line: str) -> None:
-    """Say a line to whoever started this process."""
+    """Tell a line to whoever started this process."""
     if sys.stderr is not None:  # a program without a console has none
         print(line, file=sys.stderr)
 

@@ -53,7 +53,7 @@ def owner_of(bundle: Any) -> Any:
 
 
 def _part(item: Any, like: _Packed | None) -> _Packed:
-    """The part of an item; like: one whose items may be the same."""
+    """The part of an item; like: another item, whose arrays may be the same."""
     if like is not None and like.item is item:
         return like
     if isinstance(item, np.ndarray):

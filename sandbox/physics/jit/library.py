@@ -101,7 +101,7 @@ class Library:
         return bool(self._code.runs_wide())
 
     def _connect(self) -> None:
-        """Tell the library where it finds Python."""
+        """Give the library the addresses of Python's functions."""
         functions = [ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value for name in _FUNCTIONS]
         words = [id(np.ndarray), id(None), id(TypeError), id(RuntimeError), *functions]
         self._code.connect((ctypes.c_void_p * len(words))(*words))

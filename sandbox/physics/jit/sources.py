@@ -88,7 +88,7 @@ def _is_of_kernels(statement: ast.stmt) -> bool:
 
 
 def _names(nodes: Iterable[ast.AST]) -> set[str]:
-    """The names that are read in these."""
+    """Names that these nodes read."""
     found, waiting = set(), list(nodes)
     while waiting:
         node = waiting.pop()

@@ -30,7 +30,7 @@ def shown(value: Any) -> str:
 
 
 def no_slot(argument: str, value: Any, rows: str, count: int) -> IndexError:
-    """The fault of a slot that is not there."""
+    """The error for a slot that does not exist."""
     there = f"a world with {rows} 0 to {count - 1}" if count else f"a world without {rows}"
     return IndexError(f"{argument} {shown(value)}: {there}")
 

@@ -261,7 +261,7 @@ def rows_of(part: str, columns: Any) -> int:
 
 
 def _column(kit: Columns, column: SlotColumn | NumberColumn, counts: Counts) -> Any:
-    """The values of a column, usual ones where none are given."""
+    """Values of a column; usual ones where a kit has none."""
     place, count = f"{column.part}.{column.name}", counts[column.part]
     given: Any = kit.get(column.part, {}).get(column.name)
     if given is None:

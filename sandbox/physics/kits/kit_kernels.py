@@ -71,7 +71,7 @@ class KitScratch(NamedTuple):
 
 
 class Joinable(NamedTuple):
-    """What a kit changes; a world block begins with it."""
+    """The arrays that a kit changes; a world block begins with them."""
 
     commanded: Commanded
     drives: Drives

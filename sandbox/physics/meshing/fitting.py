@@ -133,7 +133,7 @@ def fill_outline(arena: Arena, corners: FloatRows) -> int:
 
 @kernel
 def fill_stroke(arena: Arena, numbers: Floats) -> int:
-    """The same of a stroke by hand: its tolerance [m], the least area [m^2], and its places [m], each x and y."""
+    """`fill_outline` of a stroke: its tolerance [m], the least area [m^2], and its places [m], each x and y."""
     _begin(arena)
     corners = new_float_rows(arena, numbers.shape[0] // 2 - 1, 2)
     if is_full(arena):

@@ -104,13 +104,13 @@ def is_simple_part(places: FloatRows, first: int, last: int) -> bool:
 
 @kernel
 def loops_meet(places: FloatRows, start: Slots) -> bool:
-    """Whether a side of a loop touches one of another."""
+    """Whether any two of the loops touch."""
     return loops_touch_each_other(places, start)
 
 
 @inner_kernel
 def loops_touch_each_other(places: FloatRows, start: Slots) -> bool:
-    """The same, for kernels."""
+    """`loops_meet`, for kernels."""
     for loop in range(start.shape[0] - 1):
         for side in range(start[loop], start[loop + 1]):
             after = next_of(side, start[loop], start[loop + 1])
@@ -187,7 +187,7 @@ def grid_points(arena: Arena, corners: FloatRows, spacing: float, box: Slots, po
 def mark_grid(
     corners: FloatRows, first: int, last: int, spacing: float, part: GridPart, points: Flags, arena: Arena
 ) -> None:
-    """The same of the loop first..last, for kernels."""
+    """`grid_points` of the loop first..last, for kernels."""
     bottom = mark(arena)
     start = new_float_rows(arena, last - first, 2)
     lists = new_tuple(_Crossings, arena, rows=part.rows, width=part.columns + 1)

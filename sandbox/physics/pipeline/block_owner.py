@@ -74,7 +74,7 @@ class BlockOwner:
         return self._arrays
 
     def follow(self, world: World) -> None:
-        """Follow what has changed of a world's topology."""
+        """Take over changes of a world's topology."""
         if self._topology != world.topology_version:
             self._follow_topology(world)
         elif self._hands != world.hand_version:
@@ -167,7 +167,7 @@ class BlockOwner:
 
 
 def block_of(world: World) -> BlockOwner:
-    """The block of a world, as its topology is now."""
+    """The block of a world with its present topology."""
     block = world.lasting(BlockOwner)
     block.follow(world)
     return block

@@ -197,7 +197,7 @@ def prepare_contacts(state: State, start: FloatRows, collisions: Collisions, h: 
 
 @inner_kernel
 def solve_free(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
-    """Solve the contacts of what no spring or constraint holds."""
+    """Solve contacts of particles that no spring or constraint holds."""
     solve_free_contacts(
         collisions.contacts, collisions.islands, collisions.counts[FREE_ISLANDS], collisions.colliders, start,
         state.velocity, state.spin, h, collisions.work,

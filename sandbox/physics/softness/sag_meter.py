@@ -106,7 +106,7 @@ class SagMeter:
         return self._sags.get(pair, self._given_up.get(pair))
 
     def firmness(self, sag: float) -> tuple[bool, Firmness | None]:
-        """Whether the search for Cs and Cd at which the body sags so far has ended, and what it found; None: nothing."""
+        """Whether the search for Cs and Cd at which the body sags so far has ended, and its result; None: nothing."""
         if sag not in self._found:
             self._ask(sag, self._search(sag))
         return sag in self._found, self._found.get(sag)
@@ -187,7 +187,7 @@ class SagMeter:
     # What one run tells.
 
     def _sag_of(self, pair: Pair) -> Measuring:
-        """The sag at a pair, from a run of its own if it is not known."""
+        """The sag of a pair; measured by a run of its own if it is not known."""
         if pair not in self._sags:
             run = SettleRun(self.body, self.settings, self._that_swings(pair), self._moved_at(pair))
             while not run.advance():
@@ -228,7 +228,7 @@ class SagMeter:
     # Searching.
 
     def springs_of(self, firmness: Firmness) -> Pair:
-        """What springs of that firmness have. Raises OutOfReach."""
+        """Cs and Cd of the springs of a body of that firmness. Raises OutOfReach."""
         whole = self.range.coefficients(firmness)
         if whole == (1.0, 1.0) or not self.mode > 0.0:
             return (*whole, 0.0)
@@ -272,7 +272,7 @@ class SagMeter:
         self._found[sag] = nearest if math.isfinite(far) else None
 
     def _guess(self, sag: float) -> float:
-        """The softness at which it may sag so far."""
+        """The softness at which the body probably sags so far."""
         known = sorted((self._softness(pair), each) for pair, each in self._sags.items() if SMALL < each < FLYING)
         below = [each for each in known if each[1] < sag]
         above = [each for each in known if each[1] >= sag]
@@ -312,7 +312,7 @@ class SagMeter:
             yield from self._sag_of(pair)
 
     def _damping_share(self) -> Measuring:
-        """Which part of Cd holds up what stands, from runs at two Cd."""
+        """The fraction of Cd that holds up a standing body, from runs at two Cd."""
         _, (stiffness, damping, mode) = self._as_soft_as(self._guess(CURVE[0]))
         if not SOLVERS[self.settings.solver].proven_limit:
             damping = max(damping, LEAST_DAMPING)
@@ -337,7 +337,7 @@ class SagMeters:
         self._meters: dict[tuple[object, ...], SagMeter] = {}
 
     def of(self, world: World, measured: MeasuredBody) -> SagMeter:
-        """The meter of a body as it is held now."""
+        """The meter of a body that is held as it is now."""
         made_of = (id(world), world.topology_version, measured.body.shape, world.settings.gravity)
         kept = self._kept.get(measured.name)
         if kept is None or kept[0] != made_of:

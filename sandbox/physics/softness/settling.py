@@ -143,7 +143,7 @@ class SettleRun:
         return self.sag is not None
 
     def _turn_back(self) -> None:
-        """Take back what a wheel has turned about its hub."""
+        """Take back the rotation of a wheel about its hub."""
         world, hub = self.world, self._places[self.body.held][0]
         first, now = self._places - hub, world.position - hub
         across = float(world.mass @ (first[:, 0] * now[:, 1] - first[:, 1] * now[:, 0]))
@@ -183,7 +183,7 @@ class SettleRun:
         self._before, self._sag_before = position.copy(), now
 
     def _drop(self) -> float:
-        """How far it has sagged by now, of its length."""
+        """The sag by now, as a fraction of the body's length."""
         y, body = self.world.position[:, 1], self.body
         down = self._places[:, 1] - y
         if body.support is Support.FLOOR:
@@ -201,7 +201,7 @@ def _may_buckle(body: SupportedBody) -> bool:
 
 
 def supported_body(world: World, body: FirmBody) -> SupportedBody:
-    """A body as it is held in its world."""
+    """A body with the supports it has in its world."""
     slots = slots_of(world, body)
     gravity, pairs = world.settings.gravity, body.shape.pairs
     strength = design_gravity(*gravity)

@@ -167,7 +167,7 @@ def _lightness(state: State, p: int) -> float:
 
 @inner_kernel
 def _no_held_springs(arena: Arena) -> HeldSprings:
-    """Those of a world without hands."""
+    """Held springs of a world without hands: none."""
     return new_tuple(HeldSprings, arena, hands=0, particles=0, springs=0)
 
 

@@ -36,7 +36,7 @@ spring_constant = explicit_spring_constant
 
 
 class ExplicitPass(NamedTuple):
-    """What an explicit pass reads of springs (m,), and its scratch."""
+    """Columns of springs (m,) that an explicit pass reads, and its scratch."""
 
     joints: Joints  # of particles that answer by their own mass
     chosen: Flags  # (m,): the springs that it evaluates

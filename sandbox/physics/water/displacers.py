@@ -98,7 +98,7 @@ class WaterScratch(NamedTuple):
 
 
 def pools_of(pools: Sequence[Pool]) -> FloatRows:
-    """Pools as kernels read them (w, POOL_NUMBERS)."""
+    """Pools in the array of kernels (w, POOL_NUMBERS)."""
     rows = [(*pool.box, pool.density, pool.fast_drag, pool.slow_drag, *pool.flow) for pool in pools]
     # Adding 0.0 turns -0.0 into 0.0.
     return np.array(rows, np.float64).reshape(-1, POOL_NUMBERS) + 0.0

@@ -211,7 +211,7 @@ def middle_of(water: Water, o: int, position: FloatRows) -> tuple[float, float]:
 
 @inner_kernel
 def area_of(water: Water, o: int, state: State) -> float:
-    """What hull o displaces when it is all wet [m^2]."""
+    """Area [m^2] that hull o displaces when it is all wet."""
     k = water.shell_constraint[o]
     return abs(state.constraint_rest[k, 0]) if k >= 0 else water.shell_area[o]
 

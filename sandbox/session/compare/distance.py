@@ -285,14 +285,14 @@ class _WatchedRuns:
         self._levels = levels
 
     def look(self) -> None:
-        """Measure at this tick."""
+        """Measure the distances at this tick."""
         for watch, level, found in zip(self._watches, self._levels, self._found, strict=True):
             if watch.waiting:
                 for number, result in watch.look():
                     found[level.checks[number].name] = result.passed, result.text
 
     def lines(self) -> list[str]:
-        """How many hold as before, and what became of the others."""
+        """How many checks hold as before, and what became of the others."""
         before, now = self._found
         decided = [name for name in self._names if name in before and name in now]
         if not decided:

@@ -108,7 +108,7 @@ class RandomHands:
         self._acts = (self._grab, self._grab, self._grab, self._push, self._drive, self._pin, self._cut)
 
     def act(self) -> None:
-        """Do what comes to mind before the next tick."""
+        """Submit some random commands before the next tick."""
         if self._held is not None:
             self._move()
         elif self._chance.random() < self._first:

@@ -122,7 +122,7 @@ def run_of(source: str, level: Level, script: Sequence[ScriptLine], ticks: int, 
 
 
 def _unpacked(text: str) -> _LinkedRun:
-    """What a fragment holds. Raises ReplayError."""
+    """The content of a link's fragment. Raises ReplayError."""
     if len(text) > LONGEST:
         raise ReplayError(f"the link is longer than {LONGEST:,} characters")
     try:
@@ -257,7 +257,7 @@ def _metres(place: int) -> float:
 
 
 def _is_plain(value: float) -> bool:
-    """Whether it is no -0.0, which no whole number is."""
+    """Whether a value is no -0.0, which no whole number is."""
     return value != 0.0 or str(value)[0] != "-"
 
 

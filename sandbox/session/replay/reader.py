@@ -55,7 +55,7 @@ UNNUMBERED = 2**40
 
 
 class Line(BaseModel):
-    """A line's fields; others are refused."""
+    """The fields of a line; others are refused."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
@@ -121,7 +121,7 @@ class StateLine(Sealed):
 
 
 class WrittenLine(Sealed):
-    """What was written into the world past the commands."""
+    """Arrays that were written past the commands."""
 
     tick: Tick
     written: tuple[str, ...]
@@ -242,7 +242,7 @@ class RunReading:
         self.has_ended = isinstance(line, EndLine)
 
     def stored(self, line: StateLine, number: int) -> StoredState:
-        """A state, with what has not changed since the one before."""
+        """The state of a line, completed by the one before it."""
         self._state_now = {**self._state_now, **{self._once(name): text for name, text in line.state.items()}}
         joined = tuple(each.model_dump() for each in line.joined)
         return StoredState(self._state_now, WorldSettings(**dict(line.settings)), joined, number)

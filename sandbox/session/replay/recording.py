@@ -260,7 +260,7 @@ class Recorder:
             self.abandon()
 
     def abandon(self) -> None:
-        """Close the file as it is."""
+        """Close the file without an end line."""
         for file in (self._file, self._raw):
             with suppress(OSError):
                 file.close()

@@ -102,7 +102,7 @@ class Play:
         return rest[0].tick if rest else None
 
     def counts(self) -> str:
-        """How large it is, for a person."""
+        """The size of the play, in words."""
         gestures, commands, _, ticks, _ = self.size
         return f"{counted(gestures, 'gesture')}, {counted(commands, 'command')}, {counted(ticks, 'tick')}"
 

@@ -75,7 +75,7 @@ class SweepGrid:
 
     @property
     def runs(self) -> int:
-        """How many points there are."""
+        """Number of points."""
         return math.prod(map(len, self.columns.values()))
 
     @cached_property
@@ -85,7 +85,7 @@ class SweepGrid:
 
     @property
     def figures(self) -> list[str]:
-        """Names of what each run is measured by."""
+        """Names of the measures of each run."""
         return [*FIGURES, *(f"check: {check.name}" for check in self.level.checks)]
 
     @property

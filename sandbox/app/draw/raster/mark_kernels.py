@@ -108,7 +108,7 @@ def _paint_strip(pixels: Pixels, marks: MarkArrays, m: int, tiles: Sheets, clip:
 
 @inner_kernel
 def _paint_hair(pixels: Pixels, ax: float, ay: float, bx: float, by: float, colour: int, clip: Slots) -> None:
-    """One pixel per step along the longer side."""
+    """Draw a line one pixel wide, a pixel for each step along its longer side."""
     if max(ax, bx) < clip[0] or min(ax, bx) >= clip[2] or max(ay, by) < clip[1] or min(ay, by) >= clip[3]:
         return
     steps = int(max(abs(bx - ax), abs(by - ay))) + 1

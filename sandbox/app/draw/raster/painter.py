@@ -181,7 +181,7 @@ class Painter:
             pygame.draw.polygon(self.surface, unpacked(tones[sheet]), (corner[:2], corner[2:4], corner[4:]))
 
     def shadows(self, thrown: Thrown, shapes: Outlines, offset: Sequence[float], colour: int, strength: float) -> None:
-        """Throw shadows; there are none while kernels are not compiled."""
+        """Draw shadows; none where kernels are not compiled."""
         if self.exact and strength > 0.0:
             self._scratch = scratch = _scratch_for(self.surface.get_size())
             by = np.array(offset, dtype=np.float64)

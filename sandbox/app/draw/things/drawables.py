@@ -161,7 +161,7 @@ class Drawables:
     # What is drawn of them, layer by layer.
 
     def thrown(self, frame: Frame) -> tuple[Thrown, Outlines]:
-        """What throws shadows, once outlines are traced."""
+        """Shapes that throw shadows, once outlines are traced."""
         lines = np.concatenate([part.thrown(frame) for part in (self.members, self.strands, self.working)])
         return Thrown(np.ascontiguousarray(lines), np.ascontiguousarray(self.balls.thrown(frame))), self.soft.outlines
 
@@ -250,7 +250,7 @@ class KeptDrawables:
         self.drawables: Drawables | None = None
 
     def slots_of(self, joined: tuple[Joined, ...]) -> LevelSlots:
-        """The slots of the level and of what has joined it."""
+        """Slots of the level's things and of those that joined it."""
         if joined is not self._joined:
             # Bodies that were there go on as they are.
             goes_on = joined[: len(self._joined)] == self._joined

@@ -35,7 +35,7 @@ FLUSH_FROM, FLUSH_RANGE = 0.03, 0.22
 
 
 class Seen(Protocol):
-    """What of a world's state drawing reads."""
+    """The arrays of a world's state that drawing reads."""
 
     position: Floats
     velocity: Floats
@@ -134,12 +134,12 @@ class Actor:
 
     @property
     def ends(self) -> Slots:
-        """Slots (m, 2) of the ends of its springs."""
+        """Slots (m, 2) of the ends of the body's springs."""
         return self.slots[self.pairs]
 
     @property
     def is_filled(self) -> bool:
-        """Whether it is filled with triangles."""
+        """Whether the body is filled with triangles."""
         return is_filled(self.body)
 
     @property
@@ -149,12 +149,12 @@ class Actor:
 
     @cached_property
     def cell(self) -> float:
-        """A usual length [m] of its springs."""
+        """A usual length [m] of the body's springs."""
         return float(np.median(self.made.rest_length)) if len(self.pairs) else 1.0
 
     @cached_property
     def angle(self) -> float:
-        """How far [rad] it was turned when it was made."""
+        """The angle [rad] that the body had when it was made."""
         return float(self.body.__dict__.get("angle", 0.0))
 
     @cached_property
@@ -425,10 +425,10 @@ def chains_of(ends: Slots) -> list[tuple[Slots, Slots]]:
 
 
 def starts_of(lengths: list[int]) -> Slots:
-    """Where each of this many rows begins, and where the last ends."""
+    """First row of each of several groups of rows, by their lengths, and the end of the last."""
     return np.array([0, *np.cumsum(lengths)], dtype=np.int64) if lengths else np.zeros(1, dtype=np.int64)
 
 
 def spans(starts: Slots) -> list[tuple[int, int]]:
-    """First row and one past the last of each."""
+    """First row and one past the last of each group."""
     return list(pairwise(starts.tolist()))

@@ -47,7 +47,7 @@ class _Bars:
 
 
 class Members:
-    """All bars of a level that are there."""
+    """Bars of a level whose springs are there."""
 
     def __init__(self) -> None:
         self._bars: list[_Bars] = []
@@ -175,7 +175,7 @@ class _Sketch:
         self._rows.append((slots, own, *(np.broadcast_to(column, count) for column in columns)))
 
     def add(self, bars: _Bars) -> None:
-        """Add bars of one look."""
+        """Add bars that share a look."""
         if not len(bars.pairs):
             return
         frame, pairs = self._frame, bars.pairs

@@ -284,7 +284,7 @@ class _Sheet:
 
 
 class Sheets:
-    """All sheets of a level that are there."""
+    """The sheets of a level that are there."""
 
     def __init__(self) -> None:
         self._sheets: list[_Sheet] = []

@@ -48,7 +48,7 @@ class DrawnWheel:
         return bool(np.isin(np.arange(count, 3 * count), numbers).all())
 
     def mark_lugs(self, marks: MarkList, frame: Frame) -> None:
-        """Draw what lies under the tyre."""
+        """Draw the lugs under the tyre."""
         outer, hub = frame.at[self.outer], frame.at[self.hub]
         size = _size(outer - hub)
         if not self.is_tyre or size < LUGS_FROM:
@@ -146,7 +146,7 @@ class Balls:
             marks.balls(frame.at[self.slots], self.radii(frame), turn, self._colour, self._mark, self._style)
 
     def mark_pins(self, marks: MarkList, frame: Frame) -> None:
-        """Draw what is held."""
+        """Draw pins on balls that are pinned or held."""
         for slots, size in ((self.pins, 1.0), (self._held, 0.55)):
             at, k = frame.at[slots], frame.scale * size
             marks.discs(at, PIN_RIM * k, SCREW_RIM, 0.9)

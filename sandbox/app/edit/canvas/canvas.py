@@ -109,7 +109,7 @@ class SelectionMasks(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, selection: Selection, hidden: Selection = frozenset()) -> "SelectionMasks":
-        """Find them, which takes time in large selections."""
+        """The masks of a selection, which takes time where that is large."""
         chosen, away = scene.chosen(selection), scene.chosen(hidden)
         particles, springs = away[scene.particle_item], away[scene.spring_item]
         springs = springs | particles[scene.particle_a] | particles[scene.particle_b] if hidden else springs
@@ -355,7 +355,7 @@ def draw_grid(surface: pygame.Surface, camera: Camera, scale: float, step: float
 
 
 def moved_by(scene: Scene, chosen: SelectionMasks, matrix: NDArray[np.float64]) -> Scene:
-    """The scene with what is chosen where a matrix (2, 3) takes it."""
+    """The scene with its chosen particles moved by a matrix (2, 3)."""
     position = scene.position.copy()
     position[chosen.particles] = position[chosen.particles] @ matrix[:, :2].T + matrix[:, 2]
     position = position[scene.first_of_weld] if len(scene.welds) else position
@@ -388,7 +388,7 @@ class _Filled:
 
 
 class FillPreview:
-    """Draws what the parts of a scene will look like."""
+    """Draws the bodies of a scene as play will show them."""
 
     def __init__(self) -> None:
         self._painter = Painter()

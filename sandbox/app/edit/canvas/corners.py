@@ -103,7 +103,7 @@ class Placing:
             self._screen.edit(self._label, self._changed)
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Mark what the point snaps to."""
+        """Mark the thing that the point snaps to."""
         self._screen.draw_snap(surface, self._snap)
 
 

@@ -71,7 +71,7 @@ def paint_ground(canvas: Canvas, camera: Camera, ground: Ground, scale: float) -
 
 
 def paint_walls(canvas: Canvas, camera: Camera, box: Box, scale: float, colour: Colour = TERRAIN) -> None:
-    """Draw walls, and what is outside as solid."""
+    """Draw walls, solid on their outer side."""
     (x0, y1), (x1, y0) = camera.to_pixels((box[0], box[1])), camera.to_pixels((box[2], box[3]))
     view = pygame.Rect(camera.viewport)
     left, right = _within(x0, view.left, view.right), _within(x1, view.left, view.right)

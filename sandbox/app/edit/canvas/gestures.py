@@ -186,7 +186,7 @@ class _Matrix:
     """A gesture that changes the selection by its transform, or not at all."""
 
     def ghost(self) -> Document | None:
-        """None: the transform says what changes."""
+        """None: a transform of the selection shows the change, no ghost of the document."""
         return None
 
 
@@ -267,7 +267,7 @@ class Moving(_Matrix):
             return moved
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Mark what the selection snaps to."""
+        """Mark the thing that the selection snaps to."""
         self._screen.draw_snap(surface, self._snap)
 
 
@@ -337,7 +337,7 @@ class Transforming(_Matrix):
         self.transform = self._change.matrix
 
     def end(self) -> None:
-        """Scale or turn the selection by what was dragged."""
+        """Scale or turn the selection as the handle was dragged."""
         change = self._change
         if isinstance(change, Turn) and change.angle:
             self._screen.edit("Turn", lambda document: rotate(document, change.angle, change.centre))

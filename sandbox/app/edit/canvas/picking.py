@@ -48,7 +48,7 @@ class PickTool:
 
     @property
     def hint(self) -> str:
-        """What to click."""
+        """A line that says what to click."""
         return _HINTS[self._kind]
 
     @property
@@ -102,11 +102,11 @@ class PickTool:
             self._then(box)
 
     def hover(self, point: Point | None, modifiers: int) -> None:
-        """Show what a click would take."""
+        """Mark the thing that a click would take."""
         self._at = point
 
     def cancel(self) -> bool:
-        """Give the box up; whether there was one."""
+        """Drop the box; whether there was one."""
         self.is_over = True
         return True
 

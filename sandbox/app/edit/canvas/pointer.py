@@ -304,12 +304,12 @@ class DrawTool:
 
     @property
     def hint(self) -> str:
-        """What to do next, or why it cannot be done."""
+        """A line that says what to do next, or why the drawing cannot be placed."""
         return capitalised(self.drawing.hint)
 
     @property
     def measure(self) -> str:
-        """Sizes of what is drawn, in words."""
+        """Sizes of the present drawing, in words."""
         return self.drawing.measure
 
     def _snapped(self, point: Point, modifiers: int) -> Snap:
@@ -326,7 +326,7 @@ class DrawTool:
         self.drawing.move(self._snapped(point, modifiers))
 
     def up(self, point: Point, modifiers: int) -> None:
-        """Add what is drawn to the level, if the drawing is complete."""
+        """Add the drawing to the level, if it is complete."""
         self.drawing.up(self._snapped(point, modifiers))
         self._take()
 
@@ -336,7 +336,7 @@ class DrawTool:
         self._take()
 
     def adjust(self, by: int) -> None:
-        """Count the parts of what is drawn up or down."""
+        """Change the number of the drawing's parts by so many."""
         try:
             self.drawing.adjust(by)
         except EditError as error:
@@ -381,13 +381,13 @@ class DrawTool:
         drawing.cancel()
 
     def cancel(self) -> bool:
-        """Give the drawing up; whether there was one."""
+        """Drop the drawing; whether there was one."""
         under_way = self.drawing.under_way
         self.drawing.cancel()
         return under_way
 
     def ghost(self) -> Document | None:
-        """The document with what is drawn, kept while nothing changes."""
+        """The document with the drawing added, kept while nothing changes."""
         drawing, document = self.drawing, self._screen.document
         if self._snap is None and not drawing.under_way:
             return None
@@ -397,7 +397,7 @@ class DrawTool:
         return self._ghost
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Draw the corners so far, and mark what the pointer snaps to."""
+        """Draw the corners so far, and mark the thing that the pointer snaps to."""
         outline = [self._screen.camera.to_pixels(point) for point in self.drawing.outline]
         draw_outline(surface, outline, self._screen.scale)
         if self._snap is not None:

@@ -270,7 +270,7 @@ class DriveMarks:
             self._draw_keys(surface, (hub[0], hub[1] + radius + 12 * scale), motor)
 
     def _draw_keys(self, surface: pygame.Surface, at: Point, drive: HydraulicDef | MotorDef) -> None:
-        """Draw caps of the keys that drive it."""
+        """Draw caps of the keys that drive a spring or motor."""
         ui = self._ui
         keys = [key.upper() for key in (drive.key, drive.reverse_key) if key is not None]
         size = ui.px(15)

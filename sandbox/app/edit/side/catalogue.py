@@ -86,7 +86,7 @@ class CataloguePage(SidePage):
         return len(self._unfilled) > 0
 
     def refresh(self) -> None:
-        """Show what there is by now, and which part is in hand."""
+        """Show the parts found by now, and which one is in hand."""
         if self._looked <= 0:
             self._looked = LOOK_EVERY
             self._look()
@@ -253,6 +253,6 @@ class CataloguePage(SidePage):
         choose(self._ui, f"Delete the part “{part.name}”?", "Levels that use it keep their copy.", [("Delete it", do)])
 
     def _look_for(self, path: Path) -> None:
-        """Show the files as they are now, that of a path as chosen."""
+        """Read the folder again and show its files, that of a path as chosen."""
         self._looked = 0
         self._chosen = next((part for part in catalogue() if part.path == path), None)

@@ -46,7 +46,7 @@ class Trial:
         return all(getattr(level, part) is getattr(self.level, part) for part in parts)
 
     def wait(self) -> None:
-        """Wait until all of them have ended."""
+        """Wait until all runs have ended."""
         self._thread.join()
 
     def _work(self) -> None:

@@ -23,7 +23,7 @@ LIST_PART = 0.3
 
 
 class MaterialsPage(SidePage):
-    """Materials as swatches; below, what the chosen one is made of."""
+    """Materials as swatches; below, the properties of the chosen one."""
 
     follows_selection = True
 

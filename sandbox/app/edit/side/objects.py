@@ -67,7 +67,7 @@ class ObjectsPage(SidePage):
         self._last = 0
 
     def refresh(self) -> None:
-        """Show what there is now."""
+        """Show the level's present things."""
         screen = self._screen
         document, visibility, query = screen.document, screen.visibility, self.search.typed
         if any(old is not new for old, new in zip(self._shown, (document, visibility), strict=True)) or (
@@ -148,7 +148,7 @@ class ObjectsPage(SidePage):
         self._screen.set_visibility(visibility.lock(self._selected, on=not self._selected & visibility.locked))
 
     def _move(self, down: bool) -> None:
-        """Put what is selected one place further up or down."""
+        """Move the selected items one place up or down in the file's order."""
         before = self._screen.document.level
         if self._screen.edit("Order", partial(shift, later=down)) and self._screen.document.level is before:
             self._screen.say("Nothing of its kind is below it." if down else "Nothing of its kind is above it.")

@@ -84,7 +84,7 @@ class OptionsRow(PropertyWidgets):
         super().refresh()
 
     def _options(self, tool: DrawTool) -> list[Property]:
-        """What the tool can be told."""
+        """The options of a tool."""
         found = []
         for name, about in described(tool.drawing.options).items():
             if about.kind == "material":

@@ -152,7 +152,7 @@ class SettingsPage(SidePage):
         ask(self._ui, title, hint, str(rate), "Change", self._take_rate)
 
     def _take_rate(self, typed: str) -> str | None:
-        """Take a typed rate; what is wrong with it otherwise."""
+        """Take a typed rate; else the line that says what is wrong with it."""
         if not typed.isdecimal():
             return f"{typed or 'Nothing'!r} is not a whole number of ticks a second."
         try:

@@ -59,7 +59,7 @@ class RulesPage(SidePage):
         self.chosen = index
 
     def _ask(self) -> None:
-        """Offer whole rules with what the level has in them."""
+        """Open the menu of ready rules, filled in with names of the level."""
         found = templates(self._screen.document)
         choices = [(each.text, lambda each=each: self._add(each)) for each in found if each.edit is not None]
         choose(self._ui, "Add a rule", why_not(self._screen.document), choices)

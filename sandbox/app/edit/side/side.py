@@ -132,6 +132,6 @@ class Side:
         button.show_text(f"Findings {count}" if count else "Findings")
 
     def close(self) -> None:
-        """Take what is being typed, and take the panel away."""
+        """Take the text that is being typed, and remove the panel."""
         self._drop_page()
         self.back.remove()

@@ -62,7 +62,7 @@ class ChosenRow(Picker):
         self.show_value(rows, Row("") if chosen is None else rows[chosen])
 
     def press(self) -> None:
-        """Offer the rows, where there are any."""
+        """Open the menu of the rows, where there are any."""
         if self.rows:
             super().press()
 

@@ -102,7 +102,7 @@ class PadSweeps:
         self._paint()
 
     def update(self) -> bool:
-        """Take up what has been found; whether there is anything new."""
+        """Take in new results; whether there are any."""
         if self._finding is not None and self._finding.done():
             self._begin(self._finding)
             self._finding = None
@@ -124,13 +124,13 @@ class PadSweeps:
         return bool(found) or before != self.error
 
     def stop(self) -> None:
-        """Let no child run on; what is known stays."""
+        """Stop the child processes; results stay."""
         if self._work is not None:
             self._work.stop()
         self._work = self._finding = self._of = None
 
     def _begin(self, finding: "Future[_Found]") -> None:
-        """Show what was found, and let children find the rest."""
+        """Show the results so far, and let child processes find the rest."""
         try:
             found = finding.result()
             self._file, self._grid, self._journal, self._rows = found

@@ -127,7 +127,7 @@ def _draw_limits(axes: Axes, zones: CoefficientZones) -> None:
 
 
 def _legend(panels: list[SweepPanel], measures: Sequence[str]) -> list[Any]:
-    """What lines and patterns mean that are on the map."""
+    """The legend of the map's lines and patterns."""
     limits = [panel.zones for panel in panels if panel.zones is not None and not panel.zones.bounded]
     handles: list[Any] = []
 

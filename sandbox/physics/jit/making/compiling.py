@@ -59,7 +59,7 @@ class Gathered:
 
     @property
     def symbols(self) -> list[str]:
-        """What entries are called in a library."""
+        """Symbols of the entries in a library."""
         return [entry["symbol"] for entry in self.entries.values()]
 
 
@@ -87,7 +87,7 @@ def gathered(kernels: Sequence[Kernel]) -> Gathered:
 
 
 def entry_of(translation: Translation, kernel: Kernel) -> dict[str, Any]:
-    """What a manifest says of an entry."""
+    """An entry as a manifest lists it."""
     (signature,) = translation.signatures(kernel)
     takes = [_form(kind) for _, kind in signature.takes]
     assert isinstance(signature.gives, Scalar)
@@ -106,7 +106,7 @@ def _form(kind: Type) -> Any:
 
 
 def _signature(kind: Type) -> Signature:
-    """What lies in a bundle, as bundles.py says it."""
+    """The layout of a bundle, in the words of bundles.py."""
     if isinstance(kind, Array):
         return np.dtype(kind.dtype).str, kind.dimensions
     return (kind.kind if isinstance(kind, Struct) else tuple, *map(_signature, _items(kind)))
@@ -160,7 +160,7 @@ def _target(platform: Platform) -> list[str]:
 
 
 def _compiling(unit: str, platform: Platform, checked: bool, sanitized: bool) -> list[str]:
-    """What zig is to do for an object file of a unit."""
+    """The command for zig that compiles a unit to an object file."""
     language = ("-std=c11",) if unit.endswith(".c") else ("-std=c++20", "-fno-exceptions", "-fno-rtti")
     position = () if platform.is_web else ("-fPIC",)
     sanitizer = ("-fsanitize-c=full",) if sanitized else ()

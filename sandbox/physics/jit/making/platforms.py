@@ -22,7 +22,7 @@ class Platform:
 
     @property
     def file(self) -> str:
-        """The name of its library."""
+        """File name of the platform's library."""
         return f"{self.name}.{self.suffix}"
 
     @property
@@ -52,7 +52,7 @@ LIBRARIES = (
 
 
 def this_machine() -> Platform:
-    """The platform of this machine, and all that its processor can."""
+    """The platform of this machine, with all features of its processor."""
     name = library_name()
     known = next((each for each in LIBRARIES if each.file == name), None)
     if known is None:

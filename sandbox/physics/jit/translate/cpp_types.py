@@ -29,7 +29,7 @@ _UNSPOKEN = ("sandbox.",)
 
 @dataclass(frozen=True)
 class Scalar:
-    """A number or a flag; rank: what of two is the wider one."""
+    """The type of a number or flag; rank: of two the wider one has the higher."""
 
     cpp: str
     rank: int
@@ -49,20 +49,20 @@ class Array:
 
     @property
     def item(self) -> Scalar:
-        """What reading one gives: every integer is one of 64 bits."""
+        """Type of an item that is read: every integer is one of 64 bits."""
         return {"float64": FLOAT, "float32": FLOAT, "bool": FLAG}.get(self.dtype, INTEGER)
 
 
 @dataclass(frozen=True)
 class Struct:
-    """A named tuple, or what has such fields, by its class."""
+    """A named tuple, or a class with such fields."""
 
     kind: type
     cpp: str
     fields: tuple[tuple[str, "Type"], ...]
 
     def field(self, name: str) -> "Type | None":
-        """The type of a field; None: there is none of this name."""
+        """Type of a field; None: the tuple has no such field."""
         return dict(self.fields).get(name)
 
 

@@ -83,14 +83,14 @@ class Unknown(Exception):
 
 
 class Program(Protocol):
-    """What an expression asks of all kernels."""
+    """What the translation of an expression needs to know of other kernels."""
 
     def called(self, kernel: Kernel, arguments: Sequence[Type]) -> Type | str:
         """What a kernel gives for such arguments, or why it does not take them."""
         ...
 
     def name_of(self, module: str, within: str, name: str) -> str:
-        """A name of a module, as it is said within another."""
+        """A module's name as C++ spells it within another module."""
         ...
 
     def struct(self, kind: type) -> Struct:
@@ -112,7 +112,7 @@ class Expressions:
         self.program, self.module, self.own, self.types = program, module, own, types
 
     def refuse(self, node: ast.AST, reason: str) -> Untranslatable:
-        """What says that a kernel may not say this."""
+        """The error for code that a kernel must not contain, with file and line."""
         return Untranslatable(self.module, getattr(node, "lineno", 0), reason)
 
     def code(self, node: ast.expr) -> Code:
@@ -416,7 +416,7 @@ class Expressions:
 
 
 class _Replaced(ast.NodeTransformer):
-    """Lengths, with what is given in place of their names."""
+    """Replaces names in lengths by expressions."""
 
     def __init__(self, given: dict[str, ast.expr]) -> None:
         self._given = given

@@ -35,7 +35,7 @@ _RUNTIME = Path(__file__).with_name("runtime.h")
 
 @dataclass(frozen=True)
 class Signature:
-    """What a kernel takes, by name, and gives."""
+    """The parameters of a kernel, by name, and its result."""
 
     takes: tuple[tuple[str, Type], ...]
     gives: Type
@@ -75,7 +75,7 @@ class Translation:
         self._constants[constant.module, constant.name] = constant
 
     def name_of(self, module: str, within: str, name: str) -> str:
-        """A name of a module, as it is said within another."""
+        """A module's name as C++ spells it within another module."""
         return spelled(name) if module == within else f"{self._spaces.get(module, _space(module))}::{spelled(name)}"
 
     def called(self, kernel: Kernel, arguments: Sequence[Type]) -> Type | str:
@@ -163,7 +163,7 @@ class Translation:
         return "\n\n".join([self.kernels_text(), *map(self._entry_text, self.entries)]) + "\n"
 
     def kernels_text(self) -> str:
-        """Kernels alone, what is called before what calls it."""
+        """Text of the kernels alone, callees before callers."""
         parts = [_RUNTIME.read_text(encoding="utf-8"), *map(_struct_text, self._types.structs.values())]
         for module in sorted({constant.module for constant in self._constants.values()}):
             own = [constant for constant in self._constants.values() if constant.module == module]
@@ -189,7 +189,7 @@ class Translation:
 
 
 def symbol_of(entry: Kernel) -> str:
-    """What an entry is called in a library."""
+    """The symbol of an entry in a library."""
     return entry.name.partition(".")[2].replace(".", "_")
 
 

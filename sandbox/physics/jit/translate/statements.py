@@ -406,7 +406,7 @@ def _own_names(function: ast.FunctionDef) -> dict[str, bool]:
 
 
 def _targets_of(statement: ast.stmt) -> list[ast.expr]:
-    """What a statement assigns, one after another."""
+    """The targets of an assignment, one after another."""
     if isinstance(statement, ast.Assign):
         return [one for target in statement.targets
                 for one in (target.elts if isinstance(target, ast.Tuple) else [target])]  # fmt: skip

@@ -448,7 +448,7 @@ def take_piece(pointer: Bundle[Firmable], arena: Arena, body: int, number: int) 
 
 
 class FormTable:
-    """The forms of a world, and what was found of them."""
+    """The forms of a world's bodies, with the measures kept of them."""
 
     forms: Forms
     modes: FormModes
@@ -458,7 +458,7 @@ class FormTable:
         self.follow(())
 
     def follow(self, bodies: tuple[FirmBody, ...]) -> None:
-        """Follow what joined the world, or left it."""
+        """Take over bodies that joined the world, or left it."""
         if self._bodies is not bodies:
             self._bodies = bodies
             self.forms = forms_of(bodies)
@@ -482,7 +482,7 @@ class FormTable:
 
 
 def forms_of(bodies: tuple[FirmBody, ...]) -> Forms:
-    """Bodies as kernels take them."""
+    """Forms of bodies in the arrays of kernels."""
     first = np.zeros((len(bodies) + 1, KINDS_OF_ROWS), np.int64)
     if not bodies:
         # Rows have their width also where there are none: a page adds some when a body joins.

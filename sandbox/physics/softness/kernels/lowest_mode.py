@@ -120,7 +120,7 @@ def _iterate_inversely(
 
 @inner_kernel
 def new_rows(form: StiffForm, arena: Arena) -> ConstraintRows:
-    """What holds the particles of a form, at their places."""
+    """Rows of what holds the particles of a form, at their places."""
     springs, others = form.pairs.shape[0], form.areas.shape[0] + form.bends.shape[0]
     corners = 2 * springs + CORNERS * others
     rows = new_tuple(ConstraintRows, arena, rows=springs + others, corners=corners)
@@ -284,7 +284,7 @@ def _lay_out_rows(pointer: Bundle[ConstraintRows], arena: Arena, form: StiffForm
 
 
 def rows_of(form: StiffForm) -> ConstraintRows:
-    """What holds the particles of a form, at their places."""
+    """Rows of what holds the particles of a form, at their places."""
     pointer = bundle(empty(ConstraintRows))
     lay_out(_lay_out_rows, pointer, np.zeros(FIRST_ARENA, np.int64), form)
     made: ConstraintRows = items_of(pointer)

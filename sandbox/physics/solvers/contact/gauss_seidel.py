@@ -345,7 +345,7 @@ def surface_speeds(contacts: Contacts, c: int, by: FloatRows, surface: Floats) -
 
 @inner_kernel
 def has_couple(contacts: Contacts, c: int) -> bool:
-    """Whether an impulse across turns what does not roll."""
+    """Whether a tangential impulse turns a body that does not roll."""
     return contacts.partner[c, 0] >= 0 or contacts.partner[c, 1] >= 0
 
 
@@ -498,7 +498,7 @@ def add_change(velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats) ->
 
 @inner_kernel
 def new_active_set(count: int, particles: int, arena: Arena) -> ActiveSet:
-    """Room for so many contacts of so many particles."""
+    """Scratch for so many contacts of so many particles."""
     rows = 2 * count
     touched = particles if count > 0 else 0
     # (sum of lengths)^2 <= rows times the sum of their squares.
