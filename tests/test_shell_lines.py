@@ -19,8 +19,8 @@ NOT_RUN = {
     r"(\.venv/bin/)?python -m (pytest|tests)\b.*|pytest\b.*": "runs these tests",
 }
 MOST_NOT_RUN = 3
-# Lines of many runs.
-LONG = re.compile(r"sandbox sweep .*|.* levels/\*\.json .*")
+# Lines of many runs, of a site of all levels, and of kernels that Python interprets.
+LONG = re.compile(r"sandbox sweep .*|.* levels/\*\.json .*|sandbox site (--document \S+ )?-o site|SANDBOX_KERNELS=.*")
 # Files that a line writes.
 WRITTEN = re.compile(r"(?:-o|--record|>) (\S+)|^(?:cp|python) .*?(\S+)$")
 LINES = {page: list(lines_of(page)) for page in pages()}

@@ -1,7 +1,10 @@
 """The lines of the shell that documents show, and running them as they are written."""
 
+import contextlib
+import io
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -9,9 +12,11 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from unittest import mock
 
 from platformdirs import user_cache_path
 
+from sandbox.cli import main
 from tests.support.person import DEADLINE, VirtualScreen, Visitor, stranger_environment
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,6 +24,8 @@ ROOT = Path(__file__).resolve().parents[2]
 FENCED = re.compile(r"^([ #/]*)```sh\n(.*?)^\1```", re.DOTALL | re.MULTILINE)
 # Commands that open a window, and play until it is closed.
 WINDOWS = re.compile(r"^(\.venv/bin/)?sandbox( (play|edit|toy)\b.*)?$")
+# Calls of the program in which the shell has nothing to do but to tell words apart.
+PLAIN = re.compile(r"sandbox [^|<>&;$*`]*")
 
 
 @dataclass(frozen=True)
@@ -83,8 +90,22 @@ class Reader:
 
     def fault(self, line: ShellLine) -> str | None:
         """Carry a line out; what was wrong with it."""
-        told = self._visit(line.text) if line.opens_a_window else self._run(line.text)
+        carry_out = self._visit if line.opens_a_window else self._call if PLAIN.fullmatch(line.text) else self._run
+        told = carry_out(line.text)
         return told and f"{line.page}:{line.number}: {line.text}\n{told}"
+
+    def _call(self, text: str) -> str | None:
+        """Call the program in this process: a start of Python takes longer than most lines."""
+        said = io.StringIO()
+        with (
+            contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), contextlib.chdir(self.folder),
+            mock.patch.dict(os.environ, self.environment, clear=True),
+        ):  # fmt: skip
+            try:
+                code: object = main(shlex.split(text)[1:])
+            except SystemExit as refused:
+                code = refused.code
+        return f"exit code {code}\n{said.getvalue()[-2500:]}" if code else None
 
     def _run(self, text: str) -> str | None:
         run = subprocess.run(

@@ -1,9 +1,6 @@
 """A golden that fails says what was edited and how far its runs come apart, in a real run of pytest."""
 
 import json
-import subprocess
-import sys
-from importlib.metadata import entry_points
 
 import pytest
 from PIL import Image, ImageChops
@@ -19,9 +16,10 @@ from sandbox.session.replay.format import seal
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
+from tests.testing.conftest import LOADED
 
-PLUGIN = "sandbox.testing.plugin"
-LOADED = [] if any(each.value == PLUGIN for each in entry_points(group="pytest11")) else ["-p", PLUGIN]
+pytest_plugins = ["pytester"]
+
 CHECKS = [
     {"name": "it hangs", "metric": "y", "particle": "rope.end", "after": 0.5, "at_most": 5.0},
     {"name": "it is slow", "metric": "max_speed", "after": 0.2, "at_most": 2.5},
@@ -59,27 +57,24 @@ def resealed(path, **changes):
 
 
 @pytest.fixture
-def project(tmp_path):
+def project(pytester):
     """A folder with a level and a recording of it, and a function that runs pytest there."""
-    (tmp_path / "levels").mkdir()
-    recorded(tmp_path / "pull.replay.jsonl")
-    (tmp_path / "pytest.ini").write_text("[pytest]\nsandbox_against = levels\n")
+    path = pytester.path
+    (path / "levels").mkdir()
+    recorded(path / "pull.replay.jsonl")
+    (path / "pytest.ini").write_text("[pytest]\nsandbox_against = levels\n")
 
     def run(*arguments):
-        usual = ["-q", "-p", "no:cacheprovider", *LOADED, "--replay-output=out"]
-        found = subprocess.run(
-            [sys.executable, "-m", "pytest", *usual, *arguments],
-            cwd=tmp_path, capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        return found.returncode, found.stdout
+        found = pytester.runpytest_inprocess("-q", *LOADED, "--replay-output=out", *arguments)
+        return found.ret, found.stdout.str()
 
     def edit(**changes):
         level = BASE
-        for path, value in changes.items():
-            level = with_value(level, path.replace("__", "."), value)
-        (tmp_path / "levels" / "rope.json").write_text(json.dumps(level_data(level)))
+        for name, value in changes.items():
+            level = with_value(level, name.replace("__", "."), value)
+        (path / "levels" / "rope.json").write_text(json.dumps(level_data(level)))
 
-    run.path, run.edit = tmp_path, edit
+    run.path, run.edit = path, edit
     edit()
     return run
 

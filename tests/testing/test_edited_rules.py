@@ -9,7 +9,7 @@ import pytest
 from sandbox.cli import main
 from sandbox.level.reading.files import load_level
 from sandbox.session.session import Session
-from tests.testing.test_plugin import LOADED
+from tests.testing.conftest import LOADED
 
 pytest_plugins = ["pytester"]
 

@@ -7,16 +7,14 @@ from pathlib import Path
 
 import pytest
 
-# Modules that are loaded first within a run of pytester are forgotten after it: these stay the same in all tests.
-import sandbox.app.share.evidence
-import sandbox.session.worker_pool  # noqa: F401
 from sandbox.cli import main
 from sandbox.level.reading.files import level_data
 from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from tests.support.rope_level import rope_level
 from tests.testing import test_plugin as plugin_tests
-from tests.testing.test_plugin import CHECKS, LOADED
+from tests.testing.conftest import LOADED
+from tests.testing.test_plugin import CHECKS
 
 pytest_plugins = ["pytester"]
 

@@ -1,15 +1,17 @@
 """Golden files: a run within tolerances, from pytest, the command line, and after the level was tuned."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from sandbox.cli import main
 from sandbox.level.reading.files import level_data
 from sandbox.session.golden import differences, read_golden, write_golden
 from tests.support.rope_level import rope_level
+from tests.testing.conftest import LOADED
+
+pytest_plugins = ["pytester"]
 
 CHECK = {"name": "the end", "metric": "speed", "particle": "rope.end", "after": 0.4, "at_most": 50.0}
 GOLDEN = {
@@ -19,10 +21,10 @@ GOLDEN = {
 
 
 @pytest.fixture
-def golden(tmp_path) -> Path:
-    """A golden file that holds what its level does."""
-    _level(tmp_path)
-    path = tmp_path / "rope.golden.json"
+def golden(pytester) -> Path:
+    """A golden file that holds what its level does; its folder is the present one."""
+    _level(pytester.path)
+    path = pytester.path / "rope.golden.json"
     path.write_text(json.dumps(GOLDEN))
     write_golden(path, read_golden(path).measured())
     return path
@@ -37,32 +39,28 @@ def _told(path: Path) -> list[str]:
     return differences(found.file, found.measured())
 
 
-def _pytest(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-
-
-def test_what_was_recorded_holds(golden):
+def test_what_was_recorded_holds_also_in_a_process_of_its_own(golden, pytester):
     assert _told(golden) == []
-    assert _pytest(golden.parent).returncode == 0
+    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)
 
 
-def test_a_small_change_is_accepted_and_a_large_one_is_told_thing_by_thing(golden):
+def test_a_small_change_is_accepted_and_a_large_one_is_told_thing_by_thing(golden, pytester):
     _level(golden.parent, settings={"solver": "iterative", "gravity": [0.0, -9.811]})
     assert _told(golden) == []
     _level(golden.parent, settings={"solver": "iterative", "gravity": [0.0, -15.0]})
     lines = _told(golden)
     assert any(line.startswith("rope.end: at 0.4 s expected (") for line in lines)
     assert any(line.startswith("the end: expected ") and "allowed 2 %" in line for line in lines)
-    failed = _pytest(golden.parent)
-    assert failed.returncode == 1 and "Traceback" not in failed.stdout
-    assert lines[0] in failed.stdout and "to accept: pytest --replay-update" in failed.stdout
+    failed = pytester.runpytest_inprocess(*LOADED)
+    told = failed.stdout.str()
+    assert failed.ret == 1 and "Traceback" not in told
+    assert lines[0] in told and "to accept: pytest --replay-update" in told
 
 
-def test_an_update_records_what_came_in_lines_that_a_review_reads(golden):
+def test_an_update_records_what_came_in_lines_that_a_review_reads(golden, pytester):
     _level(golden.parent, settings={"gravity": [0.0, -3.0]})
-    updated = _pytest(golden.parent, "--replay-update")
-    assert updated.returncode == 0 and "recorded again" in updated.stdout
+    updated = pytester.runpytest_inprocess(*LOADED, "--replay-update")
+    assert updated.ret == 0 and "recorded again" in updated.stdout.str()
     assert _told(golden) == []
     lines = golden.read_text().splitlines()
     assert sum(line.strip().startswith('"rope.end": [[') for line in lines) == 1
@@ -71,9 +69,9 @@ def test_an_update_records_what_came_in_lines_that_a_review_reads(golden):
     assert all(each == round(each, 4) for each in numbers)
 
 
-def test_an_update_of_what_holds_leaves_the_file_as_it_is(golden):
+def test_an_update_of_what_holds_leaves_the_file_as_it_is(golden, pytester):
     before = golden.read_bytes()
-    assert _pytest(golden.parent, "--replay-update").returncode == 0
+    assert pytester.runpytest_inprocess(*LOADED, "--replay-update").ret == 0
     assert golden.read_bytes() == before
 
 
@@ -101,26 +99,19 @@ def test_commands_are_given_at_their_ticks(golden):
         ({"commands": "none.jsonl"}, "none.jsonl: cannot be read: No such file or directory"),
     ],
 )
-def test_what_a_golden_file_cannot_mean_is_one_line(golden, changed, said):
+def test_what_a_golden_file_cannot_mean_is_one_line(golden, changed, said, capsys):
     golden.write_text(json.dumps({**json.loads(golden.read_text()), **changed}))
-    run = subprocess.run(
-        [sys.executable, "-m", "sandbox", "check", golden.name], cwd=golden.parent, capture_output=True, text=True,
-        check=False,
-    )  # fmt: skip
-    assert run.returncode == 2
-    assert said in run.stderr and len(run.stderr.splitlines()) == 1, run.stderr
+    assert main(["check", golden.name]) == 2
+    told = capsys.readouterr().err
+    assert said in told and len(told.splitlines()) == 1, told
 
 
-def test_the_command_line_checks_golden_files_beside_levels(golden):
-    run = subprocess.run(
-        [sys.executable, "-m", "sandbox", "check", "rope.json", "rope.golden.json", "--json"], cwd=golden.parent,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert run.returncode == 0
-    assert [json.loads(line)["result"] for line in run.stdout.splitlines()] == ["passed", "passed"]
+def test_the_command_line_checks_golden_files_beside_levels(golden, capsys):
+    assert main(["check", "rope.json", golden.name, "--json"]) == 0
+    assert [json.loads(line)["result"] for line in capsys.readouterr().out.splitlines()] == ["passed", "passed"]
 
 
-def test_a_golden_file_that_holds_nothing_is_refused(golden):
+def test_a_golden_file_that_holds_nothing_is_refused(golden, pytester):
     golden.write_text(json.dumps({key: GOLDEN[key] for key in ("format", "level", "at")}))
-    failed = _pytest(golden.parent)
-    assert failed.returncode == 1 and "holds nothing to compare" in failed.stdout
+    failed = pytester.runpytest_inprocess(*LOADED)
+    assert failed.ret == 1 and "holds nothing to compare" in failed.stdout.str()

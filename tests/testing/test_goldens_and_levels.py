@@ -13,7 +13,10 @@ from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
-from tests.testing.test_edited_levels import LOADED, resealed
+from tests.testing.conftest import LOADED
+from tests.testing.test_edited_levels import resealed
+
+pytest_plugins = ["pytester"]
 
 TICKS = 60
 
@@ -34,29 +37,27 @@ def recorded(level, path):
 
 
 @pytest.fixture
-def project(tmp_path):
+def project(pytester):
     """A folder with a level and two recordings of it, and a function that runs pytest there."""
-    (tmp_path / "levels").mkdir()
-    level = tmp_path / "levels" / "swing.json"
+    path = pytester.path
+    (path / "levels").mkdir()
+    level = path / "levels" / "swing.json"
     write_level(rope_level(), level)
     for name in ("a.replay.gz", "b.replay.jsonl"):
-        recorded(load_level(level), tmp_path / name)
-    (tmp_path / "pytest.ini").write_text("[pytest]\nsandbox_against = levels\n")
+        recorded(load_level(level), path / name)
+    (path / "pytest.ini").write_text("[pytest]\nsandbox_against = levels\n")
 
     def run(*arguments):
-        usual = ["-q", "-p", "no:cacheprovider", *LOADED, "--replay-output=out"]
-        found = subprocess.run(
-            [sys.executable, "-m", "pytest", *usual, *arguments, "a.replay.gz", "b.replay.jsonl"],
-            cwd=tmp_path, capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        return found.returncode, found.stdout + found.stderr
+        usual = ["-q", *LOADED, "--replay-output=out"]
+        found = pytester.runpytest_inprocess(*usual, *arguments, "a.replay.gz", "b.replay.jsonl")
+        return found.ret, found.stdout.str() + "\n" + found.stderr.str()
 
     def edit(change, file="swing.json"):
         data = level_data(rope_level())
         change(data)
-        (tmp_path / "levels" / file).write_text(json.dumps(data))
+        (path / "levels" / file).write_text(json.dumps(data))
 
-    run.path, run.edit = tmp_path, edit
+    run.path, run.edit = path, edit
     return run
 
 

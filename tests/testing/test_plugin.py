@@ -4,14 +4,12 @@ import json
 import re
 import sys
 import xml.etree.ElementTree as xml
-from importlib.metadata import entry_points
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import sandbox.session.session as session_module
-from sandbox.app.draw.picture import draw_picture
 from sandbox.level.reading.files import level_data, read_level
 from sandbox.physics.step import step
 from sandbox.session.commands import Pin
@@ -20,13 +18,10 @@ from sandbox.session.replay.format import encode_state, seal
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
+from tests.testing.conftest import LOADED
 
 pytest_plugins = ["pytester"]
 
-PLUGIN = "sandbox.testing.plugin"
-# Where the project is installed, pytest has loaded it already.
-LOADED = ["-p", "no:cacheprovider", "-p", "no:hypothesispytest"]
-LOADED += [] if any(each.value == PLUGIN for each in entry_points(group="pytest11")) else ["-p", PLUGIN]
 CHECKS = [
     {"name": "the end stays up", "metric": "y", "particle": "rope.end", "after": 0.2, "at_least": -6.0},
     {"name": "it is slow", "metric": "max_speed", "after": 0.2, "at_most": 0.001},
@@ -49,8 +44,6 @@ def made(tmp_path_factory) -> Path:
         for _ in range(TICKS):
             session.advance()
         session.stop_recording()
-    # pytester forgets modules that are loaded first within a run of it; parts of pygame cannot be loaded twice.
-    draw_picture(level, session.snapshot(), (64, 36))
     return folder
 
 

@@ -1,7 +1,6 @@
 """What the plugin of pytest does where it is asked to shrink recordings, and to go back in runs."""
 
 import json
-from importlib.metadata import entry_points
 
 import numpy as np
 import pytest
@@ -13,12 +12,11 @@ from sandbox.session.commands import Pin, Push, Unpin
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
+from tests.testing.conftest import LOADED
 
 pytest_plugins = ["pytester"]
 
-PLUGIN = "sandbox.testing.plugin"
-LOADED = ["-p", "no:cacheprovider", "-p", "no:hypothesispytest", "--replay-output=out"]
-LOADED += [] if any(each.value == PLUGIN for each in entry_points(group="pytest11")) else ["-p", PLUGIN]
+OPTIONS = [*LOADED, "--replay-output=out"]
 
 
 @pytest.fixture
@@ -42,17 +40,17 @@ def project(pytester):
 
 
 def test_a_recording_that_diverges_on_a_level_is_shrunk_where_that_is_asked_for(project):
-    result = project.runpytest_subprocess(*LOADED, "--replay-against=levels", "--replay-shrink", "run.replay.gz")
+    result = project.runpytest_inprocess(*OPTIONS, "--replay-against=levels", "--replay-shrink", "run.replay.gz")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["smallest: *run.smallest.replay.gz: 1 gesture, 1 command, *: diverged at tick *"])
     smallest = read_replay(project.path / "out" / "run.smallest.replay.gz")
     assert [line.record["type"] for line in smallest.script] == ["push"]
-    plain = project.runpytest_subprocess(*LOADED, "--replay-against=levels", "run.replay.gz")
+    plain = project.runpytest_inprocess(*OPTIONS, "--replay-against=levels", "run.replay.gz")
     assert "smallest" not in plain.stdout.str()
 
 
 def test_recordings_and_levels_go_back_where_that_is_asked_for(project, monkeypatch):
-    project.runpytest_subprocess(*LOADED, "--replay-rollback=8", "--replay-against=own").assert_outcomes(passed=2)
+    project.runpytest_inprocess(*OPTIONS, "--replay-rollback=8", "--replay-against=own").assert_outcomes(passed=2)
 
     def wrong(world):
         step(world)
@@ -61,6 +59,6 @@ def test_recordings_and_levels_go_back_where_that_is_asked_for(project, monkeypa
             world.velocity[8, 1] = np.nextafter(world.velocity[8, 1], np.inf)
 
     monkeypatch.setattr(session_module, "step", wrong)
-    result = project.runpytest_inprocess(*LOADED, "--replay-rollback=8", "levels/rope.json")
+    result = project.runpytest_inprocess(*OPTIONS, "--replay-rollback=8", "levels/rope.json")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*rolled back 8 ticks under random hands, diverged: tick *: velocity*"])
