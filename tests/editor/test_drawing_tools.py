@@ -431,8 +431,8 @@ def test_steps_of_options_go_through_round_values_and_end_at_the_limits():
         up.append(stepped(mass, up[-1], 1))
     assert up == [0.7, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
     assert stepped(mass, 1.0, -1) == 0.5 and stepped(mass, None, 1) == 1.0
-    assert stepped(mass, mass.most, 1) == mass.most and stepped(mass, mass.least, -1) == mass.least
-    assert stepped(slack, 0.0, -1) == -0.05 and stepped(slack, slack.least, -1) == slack.least
+    assert stepped(mass, mass.high, 1) == mass.high and stepped(mass, mass.low, -1) == mass.low
+    assert stepped(slack, 0.0, -1) == -0.05 and stepped(slack, slack.low, -1) == slack.low
     assert stepped(links, 1, -1) == 1 and stepped(links, 1, 1) == 2
 
 

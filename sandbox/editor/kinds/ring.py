@@ -8,11 +8,10 @@ from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
-    OptionInfo,
     count_option,
     mass_option,
     material_option,
-    option,
+    number_option,
     sag_option,
 )
 from sandbox.editor.tools.drawing_tool import EditorTool
@@ -31,10 +30,9 @@ class RingOptions(BodyOptions):
     """A ring; segments None: about 0.25 m each."""
 
     segments: int | None = count_option("segments", "Number of segments; empty = about 0.25 m each.", 3)
-    inflation: float | None = option(
-        1.2,
-        OptionInfo("number", "inflation", "Air inside: the area it tries to have, times its own; empty = no air.", "",
-              0.0, INFLATION_LIMIT, optional=True, empty="no air"),
+    inflation: float | None = number_option(
+        1.2, "inflation", "Air inside: the area it tries to have, times its own; empty = no air.",
+        high=INFLATION_LIMIT, empty="no air",
     )  # fmt: skip
     particle_mass: float = mass_option(0.1)
     material: str = material_option("rubber")

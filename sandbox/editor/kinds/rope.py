@@ -7,12 +7,11 @@ from sandbox.editor.kinds.editing import BodyEditing, Motion, stretch
 from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
 from sandbox.editor.tools.drawing_options import (
     LineOptions,
-    OptionInfo,
     count_option,
     flag_option,
     mass_option,
     material_option,
-    option,
+    number_option,
 )
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -30,11 +29,8 @@ class RopeOptions(LineOptions):
     """A rope; segments None: of about 0.25 m each."""
 
     segments: int | None = count_option("segments", "Number of segments; empty = segments of about 0.25 m.", 1)
-    slack: float = option(
-        0.0,
-        OptionInfo(
-            "number", "slack", "How much longer it is than the distance of its ends, 0.1 = 10 %.", "", *SLACK_RANGE
-        ),
+    slack: float = number_option(
+        0.0, "slack", "How much longer it is than the distance of its ends, 0.1 = 10 %.", "", *SLACK_RANGE
     )
     particle_mass: float = mass_option(1.0)
     end_mass: float | None = mass_option(None, "end mass", "Mass of the last particle; empty = the same as the others.")

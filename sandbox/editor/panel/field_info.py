@@ -1,5 +1,6 @@
 """fields_of(): what the models of the level format declare of each field, for people who edit it."""
 
+import math
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -95,6 +96,11 @@ class FieldInfo:
     labels: tuple[str, ...] = ()
     tips: tuple[str, ...] = ()
     pick: Pick = ""
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The least and the most value of a number, infinite where it has no limit."""
+        return -math.inf if self.low is None else self.low, math.inf if self.high is None else self.high
 
 
 @cache

@@ -171,7 +171,7 @@ def same(values: Iterable[Any]) -> Any:
 
 def in_range(about: FieldInfo, value: float) -> float:
     """A number that is within the limits of a field, for what has no others. Raises EditError."""
-    low, high = (-math.inf if about.low is None else about.low), (math.inf if about.high is None else about.high)
+    low, high = about.limits
     if not low <= value <= high:
         limits = f"outside {low:g} to {high:g}" if high < math.inf else f"below {low:g}"
         raise EditError(f"{about.title}: {value:g} is {limits}; the old value stays")

@@ -11,7 +11,7 @@ from sandbox.editor.edits.placing import add_spring
 from sandbox.editor.kinds.wheel import RimDrawing, RimOptions
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import known_material, length
-from sandbox.editor.tools.drawing_options import OptionInfo, flag_option, option
+from sandbox.editor.tools.drawing_options import flag_option, number_option
 from sandbox.editor.tools.drawing_tool import EditorTool, staged
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import Level
@@ -34,15 +34,10 @@ class AxleOptions(RimOptions):
 
     motor: bool = flag_option(True, "motor", "A motor turns it.")
     keys: bool = flag_option(True, "keys D, A", "D drives to the right and A back; otherwise it runs from the start.")
-    speed: float = option(
-        8.0, OptionInfo("number", "speed", "Turning rate; it drives to the right.", "rad/s", 0.0, TURN_LIMIT)
-    )
-    torque: float | None = option(
-        None,
-        OptionInfo(
-            "number", "torque", "Largest torque; empty = enough for the weight of the vehicle.", "N m", 0.0,
-            TORQUE_LIMIT, optional=True,
-        ),
+    speed: float = number_option(8.0, "speed", "Turning rate; it drives to the right.", "rad/s", 0.0, TURN_LIMIT)
+    torque: float | None = number_option(
+        None, "torque", "Largest torque; empty = enough for the weight of the vehicle.", "N m", high=TORQUE_LIMIT,
+        empty="auto",
     )  # fmt: skip
     touches: bool = flag_option(False, "touches body", "The wheel touches what it is mounted on, or passes through it.")
 

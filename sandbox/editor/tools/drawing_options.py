@@ -1,11 +1,11 @@
 """What a drawing tool can be told before and while it draws; remembered from one drawing to the next."""
 
 import math
-from dataclasses import dataclass, field, fields
-from dataclasses import replace as _replace
-from typing import Any, Literal, TypeVar
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, TypeVar
 
 from sandbox.editor.document import EditError
+from sandbox.editor.panel.field_info import FieldInfo
 from sandbox.level.format.limits import (
     COORDINATE_LIMIT,
     DEFAULT_MATERIAL,
@@ -14,64 +14,55 @@ from sandbox.level.format.limits import (
     SAG_LIMIT,
 )
 
-Kind = Literal["count", "number", "flag", "material"]
-
 # Steps of a value that can be negative; others go up by 1, 2, 5, 10, 20, ...
 SIGNED_STEP = 0.05
+_STEPS = "The wheel or Up and Down change it."
 
 
-@dataclass(frozen=True)
-class OptionInfo:
-    """What a person is told of an option: kind, label, tooltip, unit, and least and most value (both included).
-
-    optional: None is a value too, "choose one that fits the size"; empty: a word that stands in an empty field.
-    """
-
-    kind: Kind
-    label: str
-    text: str
-    unit: str = ""
-    least: float = 0.0
-    most: float = COORDINATE_LIMIT
-    optional: bool = False
-    empty: str = "auto"
-
-
-def option(default: Any, about: OptionInfo) -> Any:
-    """A field of options with its label, limits and tooltip."""
+def option(default: Any, about: FieldInfo) -> Any:
+    """A field of options with its title, limits and tooltip."""
     return field(default=default, metadata={"about": about})
 
 
-def count_option(label: str, text: str, least: int, default: int | None = None) -> Any:
+def number_option(
+    default: float | None, title: str, text: str, unit: str = "", low: float = 0.0, high: float = COORDINATE_LIMIT,
+    empty: str = "",
+) -> Any:  # fmt: skip
+    """A number; empty: a word for an empty field, where None is a value too."""
+    tip = f"{text} {_STEPS}"
+    return option(default, FieldInfo("number", title, unit, low, high, tooltip=tip, optional=bool(empty), empty=empty))
+
+
+def count_option(title: str, text: str, low: int, default: int | None = None) -> Any:
     """A number of parts; None: as many as fit the size."""
-    return option(default, OptionInfo("count", label, text, "", least, PARTICLE_LIMIT, optional=default is None))
+    about = FieldInfo("integer", title, low=low, high=PARTICLE_LIMIT, tooltip=f"{text} {_STEPS}")
+    return option(default, replace(about, optional=True, empty="auto") if default is None else about)
 
 
-def mass_option(default: float | None, label: str = "mass", text: str = "Mass of each particle.") -> Any:
+def mass_option(default: float | None, title: str = "mass", text: str = "Mass of each particle.") -> Any:
     """A mass [kg]; None: as the others."""
-    return option(default, OptionInfo("number", label, text, "kg", *MASS_RANGE, optional=default is None, empty="same"))
+    return number_option(default, title, text, "kg", *MASS_RANGE, empty="same" if default is None else "")
 
 
 def sag_option(default: float | None) -> Any:
     """A sag [%] by which a body is as soft as a whole; None: as soft as its material makes it."""
     text = "How far it sags under its weight, in % of its height; empty = as its material makes it."
-    about = OptionInfo("number", "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, optional=True, empty="material")
-    return option(default, about)
+    return number_option(default, "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, "material")
 
 
-def size_option(label: str, text: str) -> Any:
+def size_option(title: str, text: str) -> Any:
     """A length [m] that may be left to the drawing."""
-    return option(None, OptionInfo("number", label, text, "m", 1e-6, optional=True))
+    return number_option(None, title, text, "m", 1e-6, empty="auto")
 
 
-def flag_option(default: bool, label: str, text: str) -> Any:
+def flag_option(default: bool, title: str, text: str) -> Any:
     """Yes or no."""
-    return option(default, OptionInfo("flag", label, text))
+    return option(default, FieldInfo("yes_no", title, tooltip=text))
 
 
 def material_option(default: str = DEFAULT_MATERIAL) -> Any:
     """The material of the springs."""
-    return option(default, OptionInfo("material", "material", "Material of the springs."))
+    return option(default, FieldInfo("material", "material", tooltip="Material of the springs."))
 
 
 @dataclass(frozen=True)
@@ -99,7 +90,7 @@ class LineOptions(BodyOptions):
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
-def described(options: Options) -> dict[str, OptionInfo]:
+def described(options: Options) -> dict[str, FieldInfo]:
     """What a person is told of each option that is set in a row of fields, by its name, in order."""
     return {each.name: each.metadata["about"] for each in fields(options) if "about" in each.metadata}
 
@@ -107,27 +98,29 @@ def described(options: Options) -> dict[str, OptionInfo]:
 def changed(options: AnyOptions, name: str, value: Any) -> AnyOptions:
     """The options with another value of one of them. Raises EditError with a line for the person."""
     about = described(options)[name]
+    low, high = about.limits
     if value is None and not about.optional:
-        raise EditError(f"{about.label}: give a value")
-    if value is not None and about.kind in ("count", "number"):
-        if isinstance(value, bool) or not isinstance(value, int if about.kind == "count" else int | float):
-            raise EditError(f"{about.label}: give a {'whole ' if about.kind == 'count' else ''}number")
-        if not about.least <= value <= about.most:
-            raise EditError(f"{about.label}: {value:g} is not in {about.least:g}..{about.most:g} {about.unit}".rstrip())
-        value = value if about.kind == "count" else float(value)
-    return _replace(options, **{name: value})
+        raise EditError(f"{about.title}: give a value")
+    if value is not None and about.kind in ("integer", "number"):
+        if isinstance(value, bool) or not isinstance(value, int if about.kind == "integer" else int | float):
+            raise EditError(f"{about.title}: give a {'whole ' if about.kind == 'count' else ''}number")
+        if not low <= value <= high:
+            raise EditError(f"{about.title}: {value:g} is not in {low:g}..{high:g} {about.unit}".rstrip())
+        value = value if about.kind == "integer" else float(value)
+    return replace(options, **{name: value})
 
 
-def stepped(about: OptionInfo, value: float | None, by: int) -> float:
+def stepped(about: FieldInfo, value: float | None, by: int) -> float:
     """The value one step up or down from another, within its limits: 1, 2, 5, 10, ... or, of counts, the next.
 
     None steps to the least count, or to 1.
     """
+    low, high = about.limits
     if value is None:
-        target = about.least if about.kind == "count" else 1.0
-    elif about.kind == "count":
-        return int(min(max(value + by, about.least), about.most))
-    elif about.least < 0.0:
+        target = low if about.kind == "integer" else 1.0
+    elif about.kind == "integer":
+        return int(min(max(value + by, low), high))
+    elif low < 0.0:
         target = round((round(value / SIGNED_STEP) + by) * SIGNED_STEP, 9)
     elif value <= 0.0:
         target = 1.0
@@ -136,4 +129,4 @@ def stepped(about: OptionInfo, value: float | None, by: int) -> float:
         steps = [float(f"{digit}e{decade + up}") for up in (-1, 0, 1) for digit in (1, 2, 5)]
         beyond = [step for step in steps if (step > value if by > 0 else step < value)]
         target = beyond[0] if by > 0 else beyond[-1]
-    return min(max(target, about.least), about.most)
+    return min(max(target, low), high)

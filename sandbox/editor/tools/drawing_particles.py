@@ -7,7 +7,7 @@ from sandbox.editor.edits.placing import add_particle, add_spring, set_pinned, w
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import direction, known_material
-from sandbox.editor.tools.drawing_options import OptionInfo, Options, flag_option, mass_option, material_option, option
+from sandbox.editor.tools.drawing_options import Options, flag_option, mass_option, material_option, number_option
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool, staged
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import ParticleDef
@@ -19,7 +19,7 @@ class ParticleOptions(Options):
     """A loose particle."""
 
     mass: float = mass_option(1.0, text="Mass.")
-    radius: float = option(0.05, OptionInfo("number", "radius", "Radius, as drawn and where it touches.", "m"))
+    radius: float = number_option(0.05, "radius", "Radius, as drawn and where it touches.", "m")
     pinned: bool = flag_option(False, "pinned", "Pin it where it is.")
 
 

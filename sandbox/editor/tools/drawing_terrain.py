@@ -6,7 +6,7 @@ from typing import Any
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import add_terrain, set_walls, with_corners
 from sandbox.editor.tools.drawing_bodies import direction, rounded
-from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
+from sandbox.editor.tools.drawing_options import Options, number_option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -16,8 +16,8 @@ from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.geometry import simplified
 
 
-def _surface(label: str, text: str, most: float) -> Any:
-    return option(None, OptionInfo("number", label, text, "", 0.0, most, optional=True, empty="level's"))
+def _surface(title: str, text: str, most: float) -> Any:
+    return number_option(None, title, text, high=most, empty="level's")
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class SurfaceOptions(Options):
 class GroundOptions(SurfaceOptions):
     """Options of terrain: its surface may run like a belt."""
 
-    belt: float = option(0.0, OptionInfo(
-        "number", "belt", "How fast its surface runs to the right of who stands on it.", "m/s", -BELT_LIMIT, BELT_LIMIT
-    ))  # fmt: skip
+    belt: float = number_option(
+        0.0, "belt", "How fast its surface runs to the right of who stands on it.", "m/s", -BELT_LIMIT, BELT_LIMIT
+    )
 
 
 class GroundDrawing(OutlineDrawing[GroundOptions]):

@@ -169,11 +169,11 @@ class Drawing(Generic[AnyOptions]):
         """Count the number of parts up or down, within its limits; from the fitting one where none is set."""
         if self.counted is None:
             return
-        about = described(self.options)[self.counted]
+        low, high = described(self.options)[self.counted].limits
         present = getattr(self.options, self.counted)
         if present is None:
             present = self.fitting(self._so_far())
-        self.set_option(self.counted, int(min(max(present + steps, about.least), about.most)))
+        self.set_option(self.counted, int(min(max(present + steps, low), high)))
 
     # ---- what each kind of drawing says
 

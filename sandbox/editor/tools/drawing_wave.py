@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.additions import muscles, wave_along
-from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
+from sandbox.editor.tools.drawing_options import Options, number_option
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import Point
@@ -14,7 +14,7 @@ from sandbox.level.format.quantities import Point
 class WaveOptions(Options):
     """How often muscles swing alike along the drag."""
 
-    waves: float = option(1.0, OptionInfo("number", "waves", "Waves along the drag.", "", 0.0, 1000.0))
+    waves: float = number_option(1.0, "waves", "Waves along the drag.", high=1000.0)
 
 
 class WaveDrawing(Drawing[WaveOptions]):

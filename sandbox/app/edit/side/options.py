@@ -15,7 +15,7 @@ from sandbox.app.widgets.property_widgets import OwnValues, PropertyWidgets, tit
 from sandbox.app.widgets.styles import LABELS
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import move, rotate, scale
-from sandbox.editor.panel.field_info import FieldInfo, Kind
+from sandbox.editor.panel.field_info import FieldInfo
 from sandbox.editor.panel.property import Property, Section
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.tools.drawing_options import described, stepped
@@ -36,7 +36,6 @@ FLAG_ROOM = 22.0
 # Digits of a place or size of the selection.
 DIGITS = 8
 NOTHING = "Nothing is selected. Draw with a tool at the left, or click something."
-KINDS: dict[str, Kind] = {"count": "integer", "number": "number", "flag": "yes_no", "material": "material"}
 CORNER = FieldInfo("number", "corner", tooltip="Of the corner [m]")
 # Of the selection, by what a change of it is called.
 NUMBERS = {
@@ -86,18 +85,12 @@ class OptionsRow(PropertyWidgets):
     def _options(self, tool: DrawTool) -> list[Property]:
         """The options of a tool."""
         found = []
-        for name, about in described(tool.drawing.options).items():
-            if about.kind == "material":
+        for name, info in described(tool.drawing.options).items():
+            if info.kind == "material":
                 # It draws with a material that the level has.
                 materials = self._screen.scene.materials
                 if getattr(tool.drawing.options, name) not in materials:
                     tool.drawing.set_option(name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
-            kind, limits = KINDS[about.kind], (about.least, about.most)
-            tip = f"{about.text} The wheel or Up and Down change it." if kind in ("number", "integer") else about.text
-            info = FieldInfo(
-                kind, about.label, about.unit, *limits, tooltip=tip, optional=about.optional,
-                empty=about.empty if about.optional else "",
-            )  # fmt: skip
             value = getattr(tool.drawing.options, name)
             found.append(Property(name, info, value, partial(_set_option, tool, name), scrubs=False))
         return found
