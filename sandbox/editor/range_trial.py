@@ -1,26 +1,23 @@
 """RangeTrial: one number of a level tried with several values: where things go, and which checks hold."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Any
+from dataclasses import dataclass, field
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.materials import set_material
 from sandbox.editor.forecast import Trail, work_for
 from sandbox.editor.items import chosen_bodies, chosen_springs
-from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.panel.level_properties import level_properties
+from sandbox.editor.panel.material_properties import material_sections
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.level.checks import CheckResult
-from sandbox.level.document.model import Level, Material
+from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
-from sandbox.level.format.quantities import replaced, significant
+from sandbox.level.format.quantities import significant
 from sandbox.session.check_run import checks_as_they_end
 
 # Values that are tried at a time, at most.
-MOST = 40
+MOST_VALUES = 40
 # Digits that the values between the ends of a range have.
 DIGITS = 6
 
@@ -106,40 +103,27 @@ def numbers(document: Document) -> list[Number]:
     names = [body.material for body in chosen_bodies(level, selection)]
     names += [spring.material for spring in chosen_springs(level, selection)]
     for name in dict.fromkeys(names):
-        material = level.materials.get(name)
-        if material is not None:
-            found += [number for each in _of_material(name, material) for number in _numbers(each)]
+        *numeric, _look = material_sections(level, name)
+        found += [number for part in numeric for each in part.properties for number in _numbers(each, f" of {name}")]
     return found
 
 
-def _of_material(name: str, material: Material) -> list[Property]:
-    def write(field: str, document: Document, value: Any) -> Document:
-        return set_material(document, name, replaced(document.level.materials[name], **{field: value}))
-
-    return [
-        Property(
-            field, replace(about, title=f"{about.title} of {name}"), getattr(material, field), partial(write, field)
-        )
-        for field, about in fields_of(type(material)).items()
-    ]
-
-
-def _numbers(each: Property) -> list[Number]:
+def _numbers(each: Property, of: str = "") -> list[Number]:
     about = each.about
     unit = f" [{about.unit}]" if about.unit else ""
     if not each.editable or each.value is None or each.value is MIXED:
         return []
     if about.kind == "point":
         axes = [axis for axis in (0, 1) if each.value[axis] is not MIXED]
-        return [Number(each, axis, f"{about.title} {each.axes[axis]}{unit}") for axis in axes]
-    return [Number(each, None, f"{about.title}{unit}")] if about.kind in ("number", "integer") else []
+        return [Number(each, axis, f"{about.title} {each.axes[axis]}{of}{unit}") for axis in axes]
+    return [Number(each, None, f"{about.title}{of}{unit}")] if about.kind in ("number", "integer") else []
 
 
 def between(low: float, high: float, count: int, *, whole: bool) -> list[float]:
     """`count` values from low to high, both included, at even distances. Raises EditError."""
     if low == high:
         raise EditError("from and to are the same; give a range")
-    if not 2 <= count <= MOST:
-        raise EditError(f"how many: give a whole number from 2 to {MOST}")
+    if not 2 <= count <= MOST_VALUES:
+        raise EditError(f"how many: give a whole number from 2 to {MOST_VALUES}")
     values = [low + (high - low) * k / (count - 1) for k in range(count)]
     return list(dict.fromkeys(float(round(value)) if whole else significant(value, DIGITS) for value in values))

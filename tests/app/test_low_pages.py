@@ -99,3 +99,23 @@ def test_the_buttons_of_the_level_follow_its_last_row(driver):
 
 def end_of(form):
     return max(widget.rect.bottom for widget in form._holder.children)
+
+
+def test_a_range_is_typed_tried_and_a_value_taken_on_a_low_page(driver):
+    page = open_page(driver, "range")
+    driver.app.ui.focus_on(page.list)
+    driver.key(pygame.K_DOWN)
+    driver.key(pygame.K_RETURN)
+    title = page.form._sections[0].title
+    scroll_to(driver, page.area, page.form.fields["How many"][0])
+    driver.fill(page.form.fields["How many"][0], "3")
+    driver.frames(60)
+    assert len(page.list.rows) == 3
+    page.area.scroll_to(0)
+    driver.frames(2)
+    assert all(in_sight(page.area, button) for button in page.buttons.values())
+    driver.click_widget(page.list)
+    driver.key(pygame.K_END)
+    driver.key(pygame.K_RETURN)
+    driver.click_widget(page.buttons["Take this value"])
+    assert driver.editor.history.labels[-1].startswith(title)

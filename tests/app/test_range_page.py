@@ -30,7 +30,7 @@ def choose_row(driver, text):
 
 def tried(driver):
     choose_row(driver, "Velocity x [m/s]")
-    driver.fill(driver.editor.side.page.fields["How many"], "4")
+    driver.fill(driver.editor.side.page.form.fields["How many"][0], "4")
     driver.frames(120)
     return driver.editor.side.page.list
 
@@ -70,5 +70,5 @@ def test_a_window_laid_out_anew_still_shows_what_was_tried(driver):
 
 def test_a_range_that_is_no_number_is_told_in_a_line(driver):
     choose_row(driver, "Mass [kg]")
-    driver.fill(driver.editor.side.page.fields["From"], "light")
+    driver.fill(driver.editor.side.page.form.fields["From"][0], "light")
     assert "light" in driver.notices[-1] and driver.editor.watch.range_trial is None

@@ -9,21 +9,32 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.trails import MOST, attempt_colour
-from sandbox.app.edit.side.side_page import SidePage
-from sandbox.app.widgets.property_widgets import GAP, ROW
+from sandbox.app.edit.side.side_page import HeadButton, ListHead, SidePage
+from sandbox.app.widgets.field import Field
+from sandbox.app.widgets.form import Form
+from sandbox.app.widgets.property_widgets import OwnValues
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.panel.typed import number_text, read_integer, read_number
-from sandbox.editor.range_trial import Attempt, Number, RangeTrial, between, numbers
+from sandbox.editor.panel.field_info import FieldInfo
+from sandbox.editor.panel.property import Property, Section
+from sandbox.editor.panel.typed import number_text
+from sandbox.editor.range_trial import MOST_VALUES, Attempt, Number, RangeTrial, between, numbers
+from sandbox.level.format.quantities import significant
 
 CHOOSE = "Choose the number to try. The level runs once for each value, with its checks."
 NO_NUMBERS = "There is no number to try here."
-LABEL = 92.0
 HEAD = 44.0
 # What is offered of a number at first: this share of it down and up, or to 1 where it is 0.
 SPAN = 0.5
-FIRST_COUNT = "7"
+FIRST_COUNT, DIGITS = 7, 3
+RANGE = (
+    FieldInfo("number", "From", tooltip="The first value."),
+    FieldInfo("number", "To", tooltip="The last value."),
+    FieldInfo("integer", "How many", "", 2, MOST_VALUES, tooltip="Values from one to the other, at even distances."),
+)
+# Part of the page that the list of values takes.
+LIST_PART = 0.5
 
 
 class RangePage(SidePage):
@@ -40,7 +51,7 @@ class RangePage(SidePage):
             self._offer()
         else:
             values = [attempt.value for attempt in trial.attempts]
-            self._begin(trial.number, number_text(values[0]), number_text(values[-1]), str(len(values)))
+            self._begin(trial.number, values[0], values[-1], len(values))
 
     # Choosing the number.
 
@@ -57,40 +68,45 @@ class RangePage(SidePage):
         number = self._numbers[index]
         value = number.value
         low, high = (value * (1 - SPAN), value * (1 + SPAN)) if value else (0.0, 1.0)
-        self._begin(number, number_text(float(f"{low:.3g}")), number_text(float(f"{high:.3g}")), FIRST_COUNT)
+        self._begin(number, significant(low, DIGITS), significant(high, DIGITS), FIRST_COUNT)
+        self._ui.focus_on(self.form.fields["From"][0])
 
     # Trying it.
 
-    def _begin(self, number: Number, low: str, high: str, count: str) -> None:
+    def _begin(self, number: Number, low: float, high: float, count: int) -> None:
         self._container.clear()
-        self._number = number
-        ui, place, gap, row = self._ui, self._place, self._ui.px(GAP), self._ui.px(ROW)
-        width, top = place.width - ui.px(6), place.top
-        ui.label(pygame.Rect(place.left, top, width, row), number.title, self._container, "title")
-        top += row + gap
-        self.fields = {}
-        for name, text in (("From", low), ("To", high), ("How many", count)):
-            ui.label(pygame.Rect(place.left, top, ui.px(LABEL), row), name, self._container, "muted")
-            at = pygame.Rect(place.left + ui.px(LABEL), top, width - ui.px(LABEL), row)
-            field = ui.field(at, text, lambda _: True, self._container, 40)
-            field.enter = lambda _: self._try()
-            self.fields[name] = field
-            top += row + gap
-        half = (width - gap) // 2
-        tip = "Run the level once with each value"
-        self._add_button("Try", pygame.Rect(place.left, top, half, row), self._try, tip)
-        self._add_button("Another number", pygame.Rect(place.left + half + gap, top, half, row), self._again, "")
-        top += row + 2 * gap
-        bottom = place.bottom - row - ui.px(6)
-        list_place = pygame.Rect(place.left, top, width, bottom - gap - top)
+        self._number, self._range = number, {"From": low, "To": high, "How many": count}
+        buttons = (
+            HeadButton("Try", "Try", self._try, "Run the level once with each value"),
+            HeadButton("Another number", "Other", self._again, ""),
+            HeadButton("Take this value", "Take", self._take, ""),
+            HeadButton("Close", "Close", lambda: self._screen.turn_to("properties"), ""),
+        )
         empty = "For each value the sheet shows where the selection goes."
-        self.list = RowList(ui, list_place, self._choose, self._container, empty=empty, most_lines=2)
-        self._add_button("Take this value", pygame.Rect(place.left, bottom, half, row), self._take, "")
-        self._add_button("Close", pygame.Rect(place.left + half + gap, bottom, half, row), self._leave, "")
+        head = ListHead(
+            self._ui, self._place, LIST_PART, 2, buttons, self._choose, self._container, empty=empty, most_lines=2
+        )
+        self.list, self.buttons, self.area = head.list, head.buttons, head.area
+        self.form = Form(OwnValues(self._screen), head.area, head.top)
+        self._show_range()
+        for (field,) in self.form.fields.values():
+            field.enter = partial(self._enter, field)
         self._shown = None
 
-    def _add_button(self, text: str, place: pygame.Rect, do: Any, tip: str) -> None:
-        self._ui.button(place, text, do, self._container, style="segment", tip=tip)
+    def _show_range(self) -> None:
+        assert self._number is not None
+        found = [
+            Property(about.title, about, self._range[about.title], partial(self._put, about.title)) for about in RANGE
+        ]
+        self.form.show([Section(self._number.title, tuple(found))])
+
+    def _put(self, name: str, document: Document, value: float) -> None:
+        self._range[name] = value
+        self._show_range()
+
+    def _enter(self, field: Field, text: str) -> None:
+        if field.commit(text):
+            self._try()
 
     def _try(self) -> None:
         number, screen = self._number, self._screen
@@ -98,9 +114,8 @@ class RangePage(SidePage):
         # It is tried in the level as it is now.
         now = next((each for each in numbers(screen.document) if each.title == number.title), number)
         try:
-            low, high = (read_number(name, self.fields[name].typed) for name in ("From", "To"))
-            count = read_integer("How many", self.fields["How many"].typed)
-            values = between(low, high, count, whole=now.about.about.kind == "integer")
+            low, high, count = self._range.values()
+            values = between(low, high, int(count), whole=now.about.about.kind == "integer")
         except EditError as error:
             screen.say(sentence(error))
             return
@@ -124,11 +139,8 @@ class RangePage(SidePage):
             screen.say("Choose a value above first.")
             return
         value, number = trial.attempts[self._chosen].value, trial.number
-        if screen.edit(f"{number.title}: {number_text(value)}", partial(_set, number, value)):
+        if screen.edit(f"{number.title}: {number_text(value)}", lambda document: number.set(document, value)):
             screen.say(f"{number.title} is {number_text(value)} now.")
-
-    def _leave(self) -> None:
-        self._screen.turn_to("properties")
 
     # Showing.
 
@@ -141,6 +153,7 @@ class RangePage(SidePage):
                 rows = [Row(number.title, aside=number_text(number.value)) for number in self._numbers]
                 self.list.show_rows(rows, None)
             return
+        self.form.refresh()
         trial = self._screen.watch.range_trial
         done = None if trial is None else (trial, trial.done, self._chosen)
         if done != self._shown or done is None:
@@ -157,10 +170,6 @@ class RangePage(SidePage):
         if attempt.fault:
             return Row(text, attempt.fault, colour, DANGER, "not possible")
         return Row(text, _way_text(attempt, trial.document), colour, TEXT, _checks_text(attempt))
-
-
-def _set(number: Number, value: float, document: Document) -> Document:
-    return number.set(document, value)
 
 
 def _checks_text(attempt: Attempt) -> str:
