@@ -11,7 +11,6 @@ from sandbox.level.format.limits import (
     CHECK_LIMIT,
     CORNER_LIMIT,
     DEFAULT_MATERIAL,
-    DEFAULT_SOLVER,
     MATERIAL_LIMIT,
     RULE_LIMIT,
     SUBSTEPS,
@@ -41,6 +40,7 @@ from sandbox.level.format.quantities import (
     HookeDamping,
     HookeStiffness,
     Id,
+    Iterations,
     Length,
     Line,
     Mass,
@@ -52,6 +52,7 @@ from sandbox.level.format.quantities import (
     Size,
     Tension,
     Text,
+    TickRate,
     TurnRate,
     Velocity,
     YieldShare,
@@ -62,7 +63,7 @@ from sandbox.level.format.quantities import (
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.level.rules.rule import CounterDef, RuleDef
-from sandbox.physics.settings import AUTO, Substeps
+from sandbox.physics.settings import AUTO, Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import ROLLING_RESISTANCE
 
@@ -70,32 +71,30 @@ from sandbox.physics.state import ROLLING_RESISTANCE
 class Settings(Description):
     """How time passes: gravity, tick rate and the solver with its settings."""
 
-    gravity: Gravity = Field(default=(0.0, -9.81), description="Acceleration of every free particle.")
-    tick_rate: int = Field(default=60, ge=1, le=10_000, description="Ticks in a second.", json_schema_extra=unit("1/s"))
+    gravity: Gravity = Field(default=WorldSettings.gravity, description="Acceleration of every free particle.")
+    tick_rate: TickRate = Field(default=WorldSettings.tick_rate, description="Ticks in a second.")
     substeps: Substeps = Field(
-        default=1,
+        default=WorldSettings.substeps,
         description="Number of steps in a tick. The direct solver keeps k and c of each spring, the other two keep its "
         'motion. "auto": each tick takes 1, 2, 4 or 8, by how far its springs turn.',
         json_schema_extra={"enum": [*SUBSTEPS, AUTO]},
     )
     solver: str = Field(
         # Every file names its solver, so that it keeps its meaning if the default changes.
-        default=DEFAULT_SOLVER,
+        default=WorldSettings.solver,
         description="How the springs of a network are solved together.",
         json_schema_extra={"enum": [*sorted(SOLVERS)]},
     )
-    iterations: int = Field(
-        default=10, ge=1, le=1_000, description="Iterations of the iterative solver in each substep."
+    iterations: Iterations = Field(
+        default=WorldSettings.iterations, description="Iterations of the iterative solver in each substep."
     )
-    warm_start: float = Field(
-        default=0.5,
-        ge=0.0,
-        le=1.0,
+    warm_start: Share = Field(
+        default=WorldSettings.warm_start,
         description="Share of the last step's pulling impulses that the iterative solver starts from.",
     )
-    wind: Velocity = Field(default=(0.0, 0.0), description="Velocity of the air. It acts only through `drag`.")
+    wind: Velocity = Field(default=WorldSettings.wind, description="Velocity of the air. It acts only through `drag`.")
     drag: Drag = Field(
-        default=0.0,
+        default=WorldSettings.drag,
         description="Rate at which every free particle takes on the wind's velocity, at any mass. In a step of h "
         "seconds the difference falls to 1/(1 + drag h) of itself.",
     )

@@ -12,6 +12,7 @@ from sandbox.level.format.limits import (
     CORNER_LIMIT,
     DRAG_LIMIT,
     FORCE_LIMIT,
+    FREQUENCY_RANGE,
     FRICTION_LIMIT,
     GRAVITY_LIMIT,
     GRAVITY_SCALE_LIMIT,
@@ -20,6 +21,8 @@ from sandbox.level.format.limits import (
     MASS_RANGE,
     PERIOD_RANGE,
     RATE_LIMIT,
+    RATIO_LIMIT,
+    SAG_LIMIT,
     SECONDS_LIMIT,
     SPACING_RANGE,
     SPEED_LIMIT,
@@ -30,6 +33,7 @@ from sandbox.level.format.limits import (
     YIELD_RANGE,
     YIELD_SHARE_LIMIT,
 )
+from sandbox.physics.commands.command import MOST_ITERATIONS
 
 
 def unit(name: str) -> dict[str, Any]:
@@ -116,6 +120,12 @@ GravityScale = Annotated[
         description="Factor of gravity for its particles: 0 floats, a negative value rises.",
     ),
 ]
+Sag = Annotated[float, Field(ge=0.0, le=SAG_LIMIT)]
+Frequency = Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])]
+DampingRatio = Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)]
+Drive = Annotated[float, Field(ge=-1.0, le=1.0)]
+TickRate = Annotated[int, Field(ge=1, le=10_000, json_schema_extra=unit("1/s"))]
+Iterations = Annotated[int, Field(ge=1, le=MOST_ITERATIONS)]
 Tension = Annotated[float, Field(gt=0.0, le=STRAIN_LIMIT)]
 Compression = Annotated[float, Field(gt=0.0, le=1.0)]
 YieldStrain = Annotated[float, Field(ge=YIELD_RANGE[0], le=YIELD_RANGE[1])]

@@ -1,20 +1,22 @@
 """BodyDef: the fields that all bodies share, and models of objects inside bodies."""
 
 from collections.abc import Iterable
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
 from sandbox.level.format.actuator_defs import MuscleDef
-from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import (
     Belt,
     Coefficient,
     Collides,
     CollisionGroup,
+    DampingRatio,
     Description,
     Extras,
+    Frequency,
     Friction,
     GravityScale,
     Group,
@@ -24,6 +26,7 @@ from sandbox.level.format.quantities import (
     Name,
     Point,
     Restitution,
+    Sag,
     Velocity,
     empty,
     unit,
@@ -36,15 +39,15 @@ End = Literal["start", "end"]
 class FirmnessDef(Description):
     """How soft a body is as a whole, at any grid, size and mass: by `sag`, or by `hz` and `ratio`."""
 
-    sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = Field(
+    sag: Sag | None = Field(
         default=None,
         description="How far it sags under its own weight where it stands, as a share of its height; 0 = rigid.",
         json_schema_extra=empty("by frequency"),
     )
-    hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = Field(
+    hz: Frequency | None = Field(
         default=None, description="Frequency of its slowest wobble.", json_schema_extra=unit("Hz") | empty("by sag")
     )
-    ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = Field(
+    ratio: DampingRatio | None = Field(
         default=None,
         description="Damping ratio of that wobble.",
         json_schema_extra=empty("0.15, or the least possible"),

@@ -5,15 +5,17 @@ from typing import Annotated, Literal, get_args
 from pydantic import Field
 
 from sandbox.level.checks import Metric
-from sandbox.level.format.limits import ACTION_LIMIT, QUESTION_LIMIT, SAG_LIMIT
+from sandbox.level.format.limits import ACTION_LIMIT, QUESTION_LIMIT
 from sandbox.level.format.quantities import (
     Description,
+    Drive,
     Extras,
     Gravity,
     Id,
     Key,
     Line,
     Name,
+    Sag,
     Seconds,
     Text,
     Velocity,
@@ -158,13 +160,9 @@ class ActionDef(Description):
         description="Wheel with a motor, or loose spring with a hydraulic, that is driven.",
         json_schema_extra=empty("none"),
     )
-    value: float = Field(
-        default=1.0, ge=-1.0, le=1.0, description="How `drive` is driven: 1 forward, -1 backward, 0 not at all."
-    )
-    sag: float | None = Field(
+    value: Drive = Field(default=1.0, description="How `drive` is driven: 1 forward, -1 backward, 0 not at all.")
+    sag: Sag | None = Field(
         default=None,
-        ge=0.0,
-        le=SAG_LIMIT,
         description="How soft `body` becomes: the part of its height by which it sags where it stands.",
         json_schema_extra=empty("none"),
     )

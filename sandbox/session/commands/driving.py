@@ -2,10 +2,8 @@
 
 from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import Annotated
 
-from pydantic import Field
-
+from sandbox.level.format.quantities import Drive
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import PartSlot
@@ -17,7 +15,7 @@ class SetDrive(Command):
 
     type = "set_drive"
     part: PartSlot
-    value: Annotated[float, Field(ge=-1.0, le=1.0)]
+    value: Drive
 
     def begins(self) -> Hashable:
         return "drive", self.part

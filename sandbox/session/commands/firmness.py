@@ -1,11 +1,8 @@
 """Bodies are made softer or firmer as a whole while they move."""
 
 from dataclasses import dataclass
-from typing import Annotated
 
-from pydantic import Field
-
-from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.level.format.quantities import DampingRatio, Frequency, Sag
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import FormSlot
 from sandbox.session.commands.ramping import Duration
@@ -22,7 +19,7 @@ class SetFirmness(Command):
 
     type = "set_firmness"
     body: FormSlot
-    sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = None
-    hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = None
-    ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
+    sag: Sag | None = None
+    hz: Frequency | None = None
+    ratio: DampingRatio | None = None
     duration: Duration = 0

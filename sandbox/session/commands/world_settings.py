@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
 
-from sandbox.level.format.quantities import Drag, Gravity, Share, Velocity
-from sandbox.physics.commands.command import MOST_ITERATIONS
+from sandbox.level.format.quantities import Drag, Gravity, Iterations, Share, Velocity
 from sandbox.physics.settings import SUBSTEPS, SolverName, SubstepChoice, Substeps
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.ramping import Duration
@@ -52,7 +51,7 @@ class SetSolver(Command):
 
     type = "set_solver"
     solver: SolverChoice | None = None
-    iterations: Annotated[int, Field(ge=1, le=MOST_ITERATIONS)] | None = None
+    iterations: Iterations | None = None
     substeps: SubstepsChoice | None = None
     warm_start: Share | None = None
     duration: Duration = 0

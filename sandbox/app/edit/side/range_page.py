@@ -9,7 +9,7 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.trails import MOST, attempt_colour
-from sandbox.app.edit.side.side_page import HeadButton, ListHead, SidePage
+from sandbox.app.edit.side.side_page import ChosenRow, HeadButton, ListHead, SidePage
 from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.form import Form
 from sandbox.app.widgets.property_widgets import OwnValues
@@ -61,7 +61,9 @@ class RangePage(SidePage):
         head = pygame.Rect(self._place.topleft, (width, ui.px(HEAD)))
         TextBlock(ui, head, CHOOSE, self._container, 12.0)
         place = pygame.Rect(head.left, head.bottom, width, self._place.height - head.height - ui.px(6))
-        self.list = RowList(ui, place, self._take_number, self._container, empty=NO_NUMBERS, at_once=False)
+        self.list: RowList | ChosenRow = RowList(
+            ui, place, self._take_number, self._container, empty=NO_NUMBERS, at_once=False
+        )
         self._shown = None
 
     def _take_number(self, index: int) -> None:
