@@ -208,7 +208,6 @@ def _coefficient(value: float) -> float:
     return round(1.0 - float(f"{1.0 - value:.{_PAIR_DIGITS}g}"), _DECIMALS)
 
 
-SAG_TIP = "Part of its height by which a body sags where it stands, or of its length where it is held; 0 is rigid"
 # What one sees of a body under its weight: the part that moves, how, and of what that is a share.
 _SEEN = {
     Support.FLOOR: ("", "sags by", "height"),

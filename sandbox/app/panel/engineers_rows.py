@@ -44,13 +44,6 @@ _SUBSTEPS = FieldInfo(
     tips=("Each tick uses as many as it needs, 1 to 8",
           *(f"A tick in {count}: {SEVERAL}" if count > 1 else "A tick in one" for count in SUBSTEPS)),
 )  # fmt: skip
-_ITERATIONS = replace(
-    fields_of(Settings)["iterations"], tooltip="Rounds of the iterative solver; fewer make things softer."
-)
-_WARM_START = replace(
-    fields_of(Settings)["warm_start"],
-    tooltip="How much of the last tick's impulses the iterative solver starts with, 0 to 1.",
-)
 _RATE = replace(
     fields_of(Settings)["tick_rate"], title="Ticks/s", unit="",
     tooltip="Ticks a second; the run starts over when you change it.",
@@ -113,10 +106,8 @@ class EngineersRows:
         solving = [
             Property("solver", _SOLVER, settings.solver, lambda _, name: SetSolver(solver=name)),
             Property("substeps", _SUBSTEPS, str(settings.substeps), _set_substeps),
-            Property("iterations", _ITERATIONS, settings.iterations, partial(_set_iterative, _ITERATIONS, "iterations"),
-                     remark=_remark),
-            Property("warm_start", _WARM_START, settings.warm_start, partial(_set_iterative, _WARM_START, "warm_start"),
-                     remark=_remark),
+            *(Property(name, fields_of(Settings)[name], getattr(settings, name), partial(_set_iterative, name),
+                       remark=_remark) for name in ("iterations", "warm_start")),
             Property("tick_rate", _RATE, settings.tick_rate, self._set_rate, scrubs=False),
         ]  # fmt: skip
         of_spring = swing_properties(self._swing, self._put)
@@ -137,8 +128,8 @@ def _set_substeps(playback: Playback, count: str) -> Command:
     return SetSolver(substeps=AUTO if count == AUTO else int(count))
 
 
-def _set_iterative(about: FieldInfo, name: str, playback: Playback, value: float) -> Command:
-    return SetSolver(**{name: in_range(about, value)})  # type: ignore[arg-type]
+def _set_iterative(name: str, playback: Playback, value: float) -> Command:
+    return SetSolver(**{name: in_range(fields_of(Settings)[name], value)})  # type: ignore[arg-type]
 
 
 def _remark(playback: Playback, value: Any) -> str:

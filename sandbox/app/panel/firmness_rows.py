@@ -13,15 +13,13 @@ from sandbox.app.widgets.field import Field, typed_number
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.document import EditError
-from sandbox.editor.panel.field_info import FieldInfo
+from sandbox.editor.panel.field_info import RATIO, WOBBLE
 from sandbox.editor.panel.material_properties import NO_FREQUENCY
 from sandbox.editor.panel.property import Property, in_range
-from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.level.format.limits import RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.keeping.equipment import Firmness
-from sandbox.physics.softness.body_motion import (
-    read_body,
-)
+from sandbox.physics.softness.body_motion import read_body
 from sandbox.physics.softness.firmness import WORDS, FirmnessRange, OutOfReach
 from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeter
 from sandbox.session.commands import SetCoefficients, SetFirmness
@@ -32,14 +30,6 @@ WORK, HASTE, AT_ONCE = 0.006, 0.02, 0.1
 AS_ASKED = 0.1
 # What is so many times as much or as little as asked is not set in its place.
 FAR = 10.0
-
-
-_WOBBLE = FieldInfo(
-    "number", "Wobble", "Hz", *FREQUENCY_RANGE, tooltip="Swings a second of the body's slowest wobble, undamped."
-)
-_RATIO = FieldInfo(
-    "number", "Damping ratio", low=0.0, high=RATIO_LIMIT, tooltip="Below 1 the body swings, above 1 it creeps back."
-)
 
 
 class FirmnessRows(SoftnessReading):
@@ -176,16 +166,16 @@ class FirmnessRows(SoftnessReading):
     def swing_properties(self) -> list[Property]:
         """Frequency and damping ratio of the chosen bodies' slowest wobble; each body keeps its own other one."""
         return [
-            Property("wobble", _WOBBLE, self.swing[0], self._set_wobble),
-            Property("wobble_ratio", _RATIO, self.swing[1], self._set_ratio),
+            Property("wobble", WOBBLE, self.swing[0], self._set_wobble),
+            Property("wobble_ratio", RATIO, self.swing[1], self._set_ratio),
         ]
 
     def _set_wobble(self, playback: Playback, hz: float) -> None:
-        in_range(_WOBBLE, hz)
+        in_range(WOBBLE, hz)
         self._set(lambda subject: Firmness(hz=hz, ratio=self._kept(subject)[1]))
 
     def _set_ratio(self, playback: Playback, ratio: float) -> None:
-        in_range(_RATIO, ratio)
+        in_range(RATIO, ratio)
         if any(self._kept(subject)[0] is None for subject in self._chosen()):
             raise EditError(NO_FREQUENCY)
         self._set(lambda subject: Firmness(hz=self._kept(subject)[0], ratio=ratio))

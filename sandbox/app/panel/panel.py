@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from sandbox.app.base.sag_map import PLAIN, SAG_TIP, CoefficientScale, own_of, scale_of
+from sandbox.app.base.sag_map import PLAIN, CoefficientScale, own_of, scale_of
 from sandbox.app.base.sentences import sentence
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
@@ -27,6 +27,7 @@ from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
+from sandbox.editor.panel.field_info import SAG
 from sandbox.physics.analysis.stability import (
     CoefficientLimits,
     CoefficientZones,
@@ -166,7 +167,7 @@ class Panel(PropertyOwner):
         x = MARGIN + INSIDE - width
         ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
-        firmness.sag.tip = SAG_TIP
+        firmness.sag.tip = SAG.tooltip
         rows.row(52, 6)
 
     def build_springs(self) -> None:

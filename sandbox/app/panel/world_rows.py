@@ -24,13 +24,7 @@ from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spri
 from sandbox.session.commands import Command, SetGravity
 from sandbox.tools.drag import STRENGTHS
 
-_AXES = tuple(
-    replace(
-        fields_of(Settings)["gravity"], kind="number", title=f"Gravity {axis}",
-        tooltip="How fast things fall; -9.81 is the Earth's gravity, at 0 they float.",
-    )
-    for axis in "xy"
-)  # fmt: skip
+_AXES = tuple(replace(fields_of(Settings)["gravity"], kind="number", title=f"Gravity {axis}") for axis in "xy")
 _TOUCH = FieldInfo(
     "choice", "Touch", choices=("off", "on"), labels=("Off", "On"),
     tips=("Things pass through each other; the run starts over", "Things touch each other; the run starts over"),

@@ -2,7 +2,7 @@
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal, get_args
 
@@ -10,7 +10,9 @@ from pydantic import BaseModel
 
 from sandbox.editor.panel.typed import number_text
 from sandbox.level.document.schema import described
+from sandbox.level.format.limits import SAG_LIMIT
 from sandbox.level.format.look import BALLS, LINES, PALETTE, SKINS
+from sandbox.level.kinds.body_def import FirmnessDef
 
 Kind = Literal[
     "number",
@@ -196,3 +198,17 @@ def _tooltip(about: FieldInfo, description: str) -> str:
     else:
         limits = f"{low[:1].upper()}{low[1:]} to {number_text(about.high)}{unit}."
     return f"{description} {limits}"
+
+
+# Of a body's firmness, as panels and tools show it: a sag in per cent.
+PERCENT = 100.0
+SAG = FieldInfo(
+    "number", "Sag", "%", 0.0, PERCENT * SAG_LIMIT,
+    tooltip="How far it sags under its own weight, in % of its height where it stands, or of its length where it is "
+    f"held; 0 is rigid. 0 to {PERCENT * SAG_LIMIT:g} %.",
+)  # fmt: skip
+# Where each has a value of its own, nothing is left empty.
+WOBBLE, RATIO = (
+    replace(about, title=title, tooltip=about.tooltip.replace(f" Empty: {about.empty}.", ""), optional=False, empty="")
+    for title, about in (("Wobble", fields_of(FirmnessDef)["hz"]), ("Damping ratio", fields_of(FirmnessDef)["ratio"]))
+)

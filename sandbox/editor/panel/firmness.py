@@ -8,11 +8,11 @@ from typing import Any
 from sandbox.editor.document import Document, EditError, validated
 from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
-from sandbox.editor.panel.field_info import FieldInfo, fields_of
+from sandbox.editor.panel.field_info import PERCENT, RATIO, SAG, WOBBLE, FieldInfo
 from sandbox.editor.panel.property import Property, same
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.format.level_error import shown
-from sandbox.level.format.limits import FREQUENCY_RANGE, SAG_LIMIT
+from sandbox.level.format.limits import FREQUENCY_RANGE
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
@@ -23,7 +23,6 @@ from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange
 # What the menu of words says of a body that is as its material is, and of one whose firmness has no word.
 OF_MATERIAL = "as material"
 NUMBERS = "by numbers"
-PERCENT = 100.0
 # Digits of readings.
 DIGITS = 3
 # Decimals of a sag in per cent.
@@ -44,14 +43,7 @@ def firmness_properties(level: Level, parts: Mapping[Item, Definition]) -> list[
     tip = (
         "How soft the whole body is, for any grid, size and mass: set it here, or let Cs and Cd of its material decide."
     )
-    choices = (OF_MATERIAL, *WORDS, NUMBERS)
-    about, inside = FieldInfo("choice", "Firmness", tooltip=tip, choices=choices), fields_of(FirmnessDef)
-    sag_tip = "How far it sags under its own weight, in % of its height. 0 to 40 %."
-    sag_about = FieldInfo("number", "Sag", "%", 0.0, PERCENT * SAG_LIMIT, tooltip=sag_tip)
-    hz_about = FieldInfo("number", "Wobble", "Hz", *FREQUENCY_RANGE, tooltip=inside["hz"].tooltip)
-    ratio_about = FieldInfo(
-        "number", "Damping ratio", high=inside["ratio"].high, low=0.0, tooltip=inside["ratio"].tooltip
-    )
+    about = FieldInfo("choice", "Firmness", tooltip=tip, choices=(OF_MATERIAL, *WORDS, NUMBERS))
 
     def made(field: str, about: FieldInfo, value: Any, asked: Callable[[Any], Asked]) -> Property:
         return Property(
@@ -61,9 +53,9 @@ def firmness_properties(level: Level, parts: Mapping[Item, Definition]) -> list[
 
     return [
         made("firmness", about, word, lambda new: partial(_by_word, new)),
-        made("firmness.sag", sag_about, sag, lambda value: lambda *_: Firmness(sag=value / PERCENT)),
-        made("firmness.hz", hz_about, hz, lambda value: partial(_by_frequency, value)),
-        made("firmness.ratio", ratio_about, ratio, lambda value: partial(_by_ratio, value)),
+        made("firmness.sag", SAG, sag, lambda value: lambda *_: Firmness(sag=value / PERCENT)),
+        made("firmness.hz", WOBBLE, hz, lambda value: partial(_by_frequency, value)),
+        made("firmness.ratio", RATIO, ratio, lambda value: partial(_by_ratio, value)),
     ]  # fmt: skip
 
 

@@ -5,13 +5,12 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
 
 from sandbox.editor.document import EditError
-from sandbox.editor.panel.field_info import FieldInfo
+from sandbox.editor.panel.field_info import SAG, FieldInfo
 from sandbox.level.format.limits import (
     COORDINATE_LIMIT,
     DEFAULT_MATERIAL,
     MASS_RANGE,
     PARTICLE_LIMIT,
-    SAG_LIMIT,
 )
 
 # Steps of a value that can be negative; others go up by 1, 2, 5, 10, 20, ...
@@ -46,8 +45,8 @@ def mass_option(default: float | None, title: str = "mass", text: str = "Mass of
 
 def sag_option(default: float | None) -> Any:
     """A sag [%] by which a body is as soft as a whole; None: as soft as its material makes it."""
-    text = "How far it sags under its weight, in % of its height; empty = as its material makes it."
-    return number_option(default, "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, "material")
+    tip = f"{SAG.tooltip} Empty = as its material makes it. {_STEPS}"
+    return option(default, replace(SAG, title="sag", tooltip=tip, optional=True, empty="material"))
 
 
 def size_option(title: str, text: str) -> Any:

@@ -71,7 +71,10 @@ from sandbox.physics.state import ROLLING_RESISTANCE
 class Settings(Description):
     """How time passes: gravity, tick rate and the solver with its settings."""
 
-    gravity: Gravity = Field(default=WorldSettings.gravity, description="Acceleration of every free particle.")
+    gravity: Gravity = Field(
+        default=WorldSettings.gravity,
+        description="Acceleration of every free particle: -9.81 is the Earth's, at 0 things float.",
+    )
     tick_rate: TickRate = Field(default=WorldSettings.tick_rate, description="Ticks in a second.")
     substeps: Substeps = Field(
         default=WorldSettings.substeps,
@@ -86,7 +89,8 @@ class Settings(Description):
         json_schema_extra={"enum": [*sorted(SOLVERS)]},
     )
     iterations: Iterations = Field(
-        default=WorldSettings.iterations, description="Iterations of the iterative solver in each substep."
+        default=WorldSettings.iterations,
+        description="Iterations of the iterative solver in each substep; fewer make things softer.",
     )
     warm_start: Share = Field(
         default=WorldSettings.warm_start,

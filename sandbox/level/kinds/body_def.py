@@ -45,11 +45,13 @@ class FirmnessDef(Description):
         json_schema_extra=empty("by frequency"),
     )
     hz: Frequency | None = Field(
-        default=None, description="Frequency of its slowest wobble.", json_schema_extra=unit("Hz") | empty("by sag")
+        default=None,
+        description="Frequency of its slowest wobble, undamped.",
+        json_schema_extra=unit("Hz") | empty("by sag"),
     )
     ratio: DampingRatio | None = Field(
         default=None,
-        description="Damping ratio of that wobble.",
+        description="Damping ratio of that wobble: below 1 it swings, above 1 it creeps back.",
         json_schema_extra=empty("0.15, or the least possible"),
     )
 
