@@ -37,7 +37,7 @@ EVENTS = (
 
 
 def controls_of(keys: Iterable[str]) -> dict[str, str]:
-    """What presses each key of a level: left, right, up, down, or a button; keys beyond those have none."""
+    """The gamepad control for each key of a level: left, right, up, down, or a button; further keys have none."""
     unpaired = sorted(keys)
     found: dict[str, str] = {}
     for pairs, ways in ((ACROSS, ("left", "right")), (UPWARDS, ("down", "up"))):

@@ -220,14 +220,14 @@ _SEEN = {
 
 
 class SagSentence(NamedTuple):
-    """What is said of a body: `sag` has {} where the share stands, `flat` is said where that says nothing any more."""
+    """Words for a sag: `sag` has {} where the number goes, `flat` is said where a number says nothing any more."""
 
     sag: str
     flat: str
 
 
 def subject_words(name: str, support: Support) -> str:
-    """What of a body sags, as it stands in a sentence: "the girder's end"."""
+    """The sagging part of a body, as it stands in a sentence: "the girder's end"."""
     article = "" if name[-1:].isdigit() else "the "
     return f"{article}{name}{_SEEN[support][0]}"
 

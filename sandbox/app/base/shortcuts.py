@@ -270,7 +270,7 @@ def spoken(keys: tuple[str, ...]) -> str:
 
 
 def combination_of(key: int, modifiers: int) -> str | None:
-    """What a key press is called in the table; None for one that no action can have."""
+    """The name of a key press in the table; None for one that no action can have."""
     key = _TWINS.get(key, key)
     name = next((name for name, code in _NAMES.items() if code == key), None)
     if name is None and 32 < key < 0x3000 and chr(key).isprintable():

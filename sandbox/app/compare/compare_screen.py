@@ -287,7 +287,7 @@ class CompareScreen(PlayScreen):
     _ticks_made = 0
 
     def captions(self) -> tuple[list[str], list[str]]:
-        """What stands over each half: its settings, and what comes of them."""
+        """The caption of each half: its settings, and how its run goes."""
         return self._caption(self.playback), self._caption(self.other)
 
     def _caption(self, playback: TwinPlayback | object) -> list[str]:
@@ -309,7 +309,7 @@ class CompareScreen(PlayScreen):
 
 
 class Difference:
-    """How far two runs are apart; text: in words."""
+    """Distance of two runs; text: in words."""
 
     def __init__(self) -> None:
         self.text = ""
@@ -352,7 +352,7 @@ def _with_unit(value: float, unit: str) -> str:
 
 
 def draw_chip(surface: pygame.Surface, ui: Ui, area: pygame.Rect, name: str, lines: Sequence[str]) -> None:
-    """A card at the top of an area [pixels] with a run's name and lines about it."""
+    """Draw a card at the top of an area [pixels] with a run's name and lines about it."""
     title = ui.font(17, True).render(name, True, ACCENT)
     fonts = [ui.font(TEXT_SIZE), *[ui.font(SMALL_SIZE)] * (len(lines) - 1)]
     inset, gap = ui.px(PADDING), ui.px(10)
@@ -375,7 +375,7 @@ def draw_chip(surface: pygame.Surface, ui: Ui, area: pygame.Rect, name: str, lin
 
 
 def draw_card_of_words(surface: pygame.Surface, ui: Ui, area: pygame.Rect, text: str) -> None:
-    """A word in large letters in the middle of an area."""
+    """Draw a word in large letters in the middle of an area."""
     picture = ui.font(22, True).render(text, True, TEXT)
     place = picture.get_rect(center=area.center)
     _card(surface, place.inflate(ui.px(44), ui.px(28)), ui)
@@ -383,7 +383,7 @@ def draw_card_of_words(surface: pygame.Surface, ui: Ui, area: pygame.Rect, text:
 
 
 def draw_pill(surface: pygame.Surface, ui: Ui, middle: tuple[int, int], text: str, colour: Colour) -> None:
-    """A line on a card about a place [pixels]."""
+    """Draw a line of text on a card about a place [pixels]."""
     picture = ui.font(TEXT_SIZE).render(text, True, colour)
     place = picture.get_rect(center=middle)
     _card(surface, place.inflate(ui.px(22), ui.px(10)), ui)

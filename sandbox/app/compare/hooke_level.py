@@ -29,7 +29,7 @@ SIZE, BOX, LINE_SCALE = (320, 360), (-1.4, -3.1, 2.0, 0.6), 1.6
 
 @dataclass(frozen=True)
 class SpringTrial:
-    """What is tried: how often the springs were made twice as stiff, the weights [kg], the ticks a second, springs."""
+    """A trial of the lesson: how often stiffness was doubled, the weights [kg], the ticks a second, springs."""
 
     doublings: int = 0
     mass: float = 1.0
@@ -89,7 +89,7 @@ def lesson_level(trial: SpringTrial, is_hooke: bool) -> Level:
 
 
 def words(trial: SpringTrial, exploded_at: int | None) -> str:
-    """What is to be seen in a trial, and what to try next; exploded_at: the tick at which Hooke's side did."""
+    """The words of a trial and of what to try next; exploded_at: the tick at which Hooke's side did."""
     weight, limit = f"{trial.mass:g} kg", f"{trial.highest_k:,.0f}"
     if exploded_at is not None:
         return (

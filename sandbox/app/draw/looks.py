@@ -51,7 +51,7 @@ _STUFF_COLOURS = {"wood": WOOD, "stone": STONE, "brick": BRICK, "cloth": CLOTH, 
 
 @dataclass(frozen=True)
 class Look:
-    """What a body is drawn as. skin: one of SKINS or tyre, "" = its lines alone; colours are 0xRRGGBB."""
+    """The look of a body. skin: one of SKINS or tyre, "" = its lines alone; colours are 0xRRGGBB."""
 
     skin: str
     line: str
@@ -74,7 +74,7 @@ def _stiffness(level: Level, material: str) -> float:
 
 
 def _said(level: Level, body: BodyDef | SpringDef) -> dict[str, Any]:
-    """What a level says of a body: the body over its material; names that nobody knows count as nothing."""
+    """The look that a level gives a body, over that of its material; unknown names count as nothing."""
     said: dict[str, Any] = {}
     material = level.materials.get(body.material)
     for look in (None if material is None else material.look, getattr(body, "look", None)):
@@ -161,7 +161,7 @@ def spring_look(level: Level, spring: SpringDef) -> Look:
 
 
 def ball_look(level: Level, particle: ParticleDef, index: int, many: bool) -> tuple[str, int | None]:
-    """What ball a loose particle is, and its colour, None = that of its kind."""
+    """The kind of ball that a loose particle is drawn as, and its colour, None = that of its kind."""
     look = particle.look
     ball = look.ball if look is not None and look.ball in BALLS else None
     colour = colour_of(look.colour) if look is not None and look.colour is not None else None
@@ -184,7 +184,7 @@ def ground_look(level: Level, name: str, wide: bool) -> str:
 
 
 def added_spring_look(stiffness: float) -> Look:
-    """What a spring of that Cs is drawn as which a command added by itself: a coil where it gives way, else a bar."""
+    """The look of a spring of that Cs which a command added by itself: a coil where it gives way, else a bar."""
     return Look("", "steel" if stiffness >= FIRM else "coil", PAINTS["mesh"])
 
 

@@ -54,7 +54,7 @@ DASHES = 5
 
 @dataclass
 class Scale:
-    """What the arrow or bar of the legend stands for: 1, 2 or 5 times a power of ten, `least` at least; 0 = unknown."""
+    """The value of the legend's arrow or bar: 1, 2 or 5 times a power of ten, `least` at least; 0 = unknown."""
 
     value: float = 0.0
     least: float = 0.0

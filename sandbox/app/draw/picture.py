@@ -28,7 +28,7 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
 
 def view_of(level: Level, snapshot: Snapshot) -> Box:
-    """What the camera shows at first: the level's view, or else all of its particles and terrain."""
+    """The first box of the camera: the level's view, or else all of its particles and terrain."""
     return level.view or bounds(_points(snapshot))
 
 
@@ -134,7 +134,7 @@ class PartGhost:
         self._known: tuple[Level, Snapshot, Box] | None = None
 
     def picture(self, preview: DropPicture, zoom: float, like: Renderer) -> pygame.Surface | None:
-        """What would be added, in the middle of its picture; None where that would be too large.
+        """The part that would be added, in the middle of a picture; None where that would be too large.
 
         zoom [pixels/m]; like: a renderer of the run, whose theme and scale the picture has.
         """

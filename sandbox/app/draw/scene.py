@@ -276,7 +276,7 @@ def _runs(slots: NDArray[np.int64]) -> list[list[int]]:
 
 
 def _ground(level: Level, snapshot: Snapshot) -> list[dict[str, Any]]:
-    """What each chain of the terrain is made of, or "line", and its points [m]; what is closed ends where it begins."""
+    """The material of each chain of the terrain, or "line", and its points [m]; closed ones end where they begin."""
     terrain, made = snapshot.terrain, []
     left, _, right, _ = view_of(level, snapshot)
     extent = max(float(np.ptp(terrain.vertex[:, 0])) if len(terrain.vertex) else 0.0, right - left)

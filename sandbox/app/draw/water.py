@@ -52,7 +52,7 @@ class DrawnPool:
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    """What a pool looks like while the view stays: the part without waves, and the profile of that with waves."""
+    """The picture of a pool while the view stays: the part without waves, and the profile of that with waves."""
 
     key: tuple[object, ...]
     terrain: Terrain

@@ -224,7 +224,7 @@ def open_context_menu(screen: Editing, pixel: Pixel) -> None:
 
 
 def _things(screen: Editing, under: list[Item]) -> list[_Entry]:
-    """What lies under the pointer, each alone, and the group of the first."""
+    """The things under the pointer, each alone, and the group of the first."""
     level = screen.document.level
     if len(under) < 2 and not any(item in groups_of(level) for item in under):
         return []

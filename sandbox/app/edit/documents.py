@@ -31,7 +31,7 @@ OFFERED = 5
 
 
 class DocumentActions:
-    """What the app does with the level that is edited; `editor` is its screen, also while it is played."""
+    """Actions on the level that is edited; `editor` is its screen, also while it is played."""
 
     def __init__(self, app: Application) -> None:
         self.app = app

@@ -531,7 +531,7 @@ class EditScreen:
         draw_snap(surface, self.ui, self.camera.to_pixels(snapped.point), snapped)
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
-        """What to do next, where the pointer is, and what the level has."""
+        """A line about what to do next, where the pointer is, and how large the level is."""
         scene, selection = self.scene, self.document.selection
         parts: list[tuple[str, Colour]] = [
             (TOOLS[self.tool].title, ACCENT),

@@ -29,7 +29,7 @@ SHADE = (0, 0, 0, 96)
 
 
 class Film:
-    """What `session` has done from the first to the last tick of a span, as a camera shows it and a renderer draws it.
+    """The ticks of a session in a span, as a camera shows them and a renderer draws them.
 
     What becomes of the three after that does not change the film. box [m]: what is shown instead, as large as it goes,
     whatever shape the pictures have. first, last: its ticks. is_latest: whether it ends where the run is. script: all
@@ -219,7 +219,7 @@ class FilmPair:
 
 
 class _PairSheet:
-    """What pictures of a pair are laid on. places: of each of the two [pixels]."""
+    """The sheet of both pictures of a pair. places: of each of the two [pixels]."""
 
     def __init__(self, pair: FilmPair, size: Size, name: str) -> None:
         (width, height), scale = size, size[1] / 360.0

@@ -185,7 +185,7 @@ class Card(Pressable):
 
 
 def draw_shadow(surface: pygame.Surface, place: pygame.Rect, ui: Ui) -> None:
-    """A soft shadow behind what lies over the others."""
+    """Draw a soft shadow behind a card that lies over the others."""
     for step in range(6, 0, -1):
         around = place.move(0, ui.px(4)).inflate(ui.px(3 * step), ui.px(3 * step))
         shade = pygame.Surface(around.size, pygame.SRCALPHA)

@@ -165,7 +165,7 @@ class Chart:
             self._surface.blit(text, (x + self._px(SAMPLE + 4), round(top)), (0, 0, width, text.get_height()))
 
     def _draw_sample(self, line: GraphLine, x: float, y: float) -> None:
-        """A piece of a line as it is drawn."""
+        """Draw a piece of a line as a sample of its colour and dashes."""
         on, off = line.dashes
         start = 0.0
         while start < SAMPLE:

@@ -261,7 +261,7 @@ MOST_MOTORS = 5
 
 @dataclass(frozen=True)
 class Moment:
-    """What can be measured at the end of a frame: a world, the particles that were picked [slots], times [ms].
+    """The state to measure at the end of a frame: a world, the picked particles [slots], times [ms].
 
     tick_time: of one tick; frame_time: of the whole frame before; None where no tick was made.
     """

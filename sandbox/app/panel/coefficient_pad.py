@@ -33,7 +33,7 @@ Mask = NDArray[np.bool_]
 
 
 class PadState(NamedTuple):
-    """What the pad shows: Cs and Cd, whether springs differ in them, and whether there are any.
+    """The state of the pad: Cs and Cd, whether springs differ in them, and whether there are any.
 
     own: what the level itself has; scale: of both axes; body: that of which words are, and subject: what of it sags.
     """
@@ -429,7 +429,7 @@ def _border(mask: Mask) -> Mask:
 
 
 def _zone_labels(zones: CoefficientZones, scale: CoefficientScale) -> list[tuple[str, Colour, float, float]]:
-    """What is written on the zones, in a colour, at shares of the map's width and height from its upper left corner."""
+    """The words on the zones, with colour, and place in shares of the map's width and height from its upper left."""
     if zones.bounded:
         return [("may bounce higher, never explodes", MUTED, 0.66, 0.95)]
     if zones.proven is None or zones.article is None:

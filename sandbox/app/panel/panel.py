@@ -60,7 +60,7 @@ NO_SPRING = "there is no spring here that Cs and Cd apply to"
 
 @dataclass
 class PanelShape:
-    """How a person has the panel: springs by "pad" or "sliders", None: as room allows; which sections are open.
+    """The shape of the panel: springs by "pad" or "sliders", None: as room allows; which sections are open.
 
     open: by name, MORE too; of those that are not in it all but MORE are open.
     """

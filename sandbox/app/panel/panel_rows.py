@@ -78,7 +78,7 @@ class PanelRows:
         return made
 
     def section(self, title: str, is_open: bool, toggle: Callable[[], None], build: Callable[[], None]) -> None:
-        """A heading, and what `build` makes under it, which is seen where the section is open."""
+        """Add a heading, and what `build` makes under it, which is seen where the section is open."""
         width = self.ui.font(HEADING_SIZE, True).size(title.upper())[0] / self.ui.scale + HEADING_ROOM
         FoldHeading(self.ui, self.row(18, 8, width=width), title, not is_open, toggle, self.back)
         before, y = len(self.back.children), self.y
@@ -114,7 +114,7 @@ class PanelForm(PropertyWidgets):
         self._place.y = self._y
 
     def _add_row(self, each: Property) -> None:
-        """A choice, beside its title where there is room for that."""
+        """Add a choice, beside its title where there is room for that."""
         about, font = each.about, self._ui.font(LABELS["muted"].size)
         widest = max(font.size(label)[0] for label in about.labels or about.choices) / self._ui.scale
         is_beside = len(about.choices) * (widest + BUTTON_ROOM) <= INSIDE - BESIDE

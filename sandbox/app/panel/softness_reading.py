@@ -38,7 +38,7 @@ DIGITS, SWING_DIGITS = 2, 3
 
 
 class Reading(NamedTuple):
-    """What is shown of a body: its sag, None: not measured yet, NaN: it cannot be; its wobble, None: it has none."""
+    """The softness of a body: its sag, None: not measured yet, NaN: it cannot be; its wobble, None: it has none."""
 
     subject: MeasuredBody
     sag: float | None
@@ -47,7 +47,7 @@ class Reading(NamedTuple):
 
 
 class Said(NamedTuple):
-    """What is said of bodies: a word, "" where there is no one word for them, their sag [%] as a text, a sentence."""
+    """The words for bodies: one word, "" where none fits all, their sag [%] as a text, a sentence."""
 
     word: str
     sag: str
@@ -74,7 +74,7 @@ class SoftnessReading:
         return bool(self._meters.busy)
 
     def read(self, seconds: float, look: bool) -> Said | None:
-        """What is said of the chosen bodies after so much work; None: nothing else than before.
+        """The words for the chosen bodies after so much work; None: the same as before.
 
         look: also where no command of the person's has changed them.
         """

@@ -148,7 +148,7 @@ class _TakeHomePage:
 
 
 def _texts(take: TakeHome, to: str) -> tuple[str, str]:
-    """What is pasted, "" where that is nothing, and what is to be known about it."""
+    """The code to paste, "" where there is none, and what to know about it."""
     about = as_text(take, to)
     if to == "all":
         return "", about

@@ -70,7 +70,7 @@ STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), p
 
 
 class DropTarget(Protocol):
-    """What takes a part from its card; cards: all of them, in their order."""
+    """The screen that a part is dragged to from its card; cards: all of them, in their order."""
 
     cards: "list[PartCard]"
 

@@ -54,7 +54,7 @@ class DriveKeys:
 
     @property
     def _keys(self) -> dict[int, list[tuple[int, float]]]:
-        """What each key drives: parts of the level, and of what has joined it."""
+        """The parts that each key drives: of the level, and of what has joined it."""
         joined = self.playback.session.world.joined
         if self._joined is not joined:
             self._joined, self._all = joined, {}

@@ -58,7 +58,7 @@ class Played(Protocol):
 
 
 class Game:
-    """What rules make of a run on a stage; is_on: whether the run is one to be won or lost, and not one of a pair."""
+    """The rules of a level on a stage; is_on: whether the run is one to be won or lost, and not one of a pair."""
 
     def __init__(self, app: Application, screen: Played, stage: Callable[[], Stage], is_on: bool) -> None:
         self._app, self._screen, self._stage = app, screen, stage
@@ -323,7 +323,7 @@ _GHOST_BUDGET = 0.006
 
 
 class GhostRun:
-    """Follows another run; state: how it stood at that tick, None while it is not there yet."""
+    """Plays another run beside this one; state: at the same tick, None while it is not there yet."""
 
     def __init__(self, replay: Replay) -> None:
         self._session = Session(replay.level, script=replay.script)

@@ -40,7 +40,7 @@ Draw = Callable[["_Sample"], None]
 
 @dataclass(frozen=True)
 class _Sample:
-    """Where a sample is drawn: left edge, middle, width [pixels]; px: pixels of layout units."""
+    """The place of a sample: left edge, middle, width [pixels]; px: pixels of layout units."""
 
     canvas: Canvas
     x: float
@@ -50,13 +50,13 @@ class _Sample:
     theme: Theme
 
     def line(self, x0: float, y0: float, x1: float, y1: float, colour: Colour, width: float) -> None:
-        """A line between places in layout units from the left edge and the middle."""
+        """Draw a line between places in layout units from the left edge and the middle."""
         k = self.scale
         ends = [[self.x + x0 * k, self.y + y0 * k, self.x + x1 * k, self.y + y1 * k]]
         self.canvas.lines(np.array(ends), np.array([packed(colour)]), width * k)
 
     def disc(self, x: float, radius: float, colour: Colour) -> None:
-        """A disc in the middle."""
+        """Draw a disc in the middle."""
         at = np.array([[self.x + x * self.scale, self.y]])
         self.canvas.discs(at, np.array([radius * self.scale]), np.array([packed(colour)]))
 
@@ -135,7 +135,7 @@ def _painted(scale: float, rows: list[tuple[str, Draw]], theme: Theme, most: int
 
 
 def rows_of(overlays: Overlays, solver: str) -> list[tuple[str, Draw]]:
-    """What is said of everything that is shown, and how it is drawn beside it."""
+    """The legend's rows: words for everything that is shown, and how to draw its sample."""
     rows: list[tuple[str, Draw]] = []
     shown = overlays.shown
     if "lattice" in shown:

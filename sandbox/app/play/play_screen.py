@@ -152,7 +152,7 @@ class PlayScreen:
 
     @property
     def area(self) -> tuple[int, int, int, int]:
-        """What bar, panel, timeline and status line leave of the window, in pixels."""
+        """The part of the window [pixels] beside bar, panel, timeline and status line."""
         ui, (width, height) = self._ui, self._ui.size
         top, bottom = ui.px(BAR_HEIGHT), ui.px(STATUS_HEIGHT)
         right = ui.px(PANEL_WIDTH) if self.show_panel else 0

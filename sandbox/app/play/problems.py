@@ -24,7 +24,7 @@ from sandbox.session.commands import Free, MoveBody
 
 
 class Problems:
-    """What is stuck, what has left the picture, what went out of bounds and what broke in the run of a stage.
+    """Bodies that are stuck or left the picture, values out of bounds and breaks in the run of a stage.
 
     say: shows a line about the run.
     """

@@ -201,7 +201,7 @@ def star_times(stars: int) -> list[float]:
 
 @dataclass(frozen=True)
 class Ending:
-    """What a card tells: the outcome, the ticks in a second, the best time before [s], and whether this one is better.
+    """The text of a card: the outcome, the ticks in a second, the best time before [s], and whether this is better.
 
     best: None where the level was never won before.
     """

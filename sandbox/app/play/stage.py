@@ -400,7 +400,7 @@ def driven_particle(world: World) -> int | None:
 
 
 class Following:
-    """What a camera goes along with: the body of a particle (None: nothing)."""
+    """The body that a camera follows, by one of its particles (None: nothing)."""
 
     def __init__(self) -> None:
         self.particle: int | None = None

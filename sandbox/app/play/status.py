@@ -289,7 +289,7 @@ class RunProgress:
         return position[0] * ratio[0], position[1] * ratio[1]
 
     def end(self) -> None:
-        """As a frame ends: forget what was pressed in it, where the bar was seen."""
+        """Forget keys and presses of a frame that showed the bar."""
         if self._is_seen:
             self._is_seen = False
             pygame.event.clear(_BEGUN)

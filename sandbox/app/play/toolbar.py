@@ -199,7 +199,7 @@ class Toolbar:
             self.buttons[action].show_icon(icon, tint)
 
     def _add(self, action: str, do: Callable[[], None] | None = None, tip: str = "") -> None:
-        """A button of an action at the next place; do: in place of what the table of shortcuts has."""
+        """Add an action's button at the next place; do: in place of what the table of shortcuts has."""
         width, words = _width(action, self._is_wide), (WIDE_WORDS if self._is_wide else WORDS).get(action, "")
         place = self._ui.rect(self._x, (BAR_HEIGHT - BUTTON) / 2, width, BUTTON)
         self._x += width + GAP

@@ -78,7 +78,7 @@ class Stopped:
         return [str(hit) for hit in self._hits if hit.tick <= tick]
 
     def text(self, tick: int) -> str:
-        """What happened until a tick, for a person; "" where nothing did."""
+        """The events until a tick, in words for a person; "" where there are none."""
         hits = [hit for hit in self._hits if hit.tick <= tick]
         # What a particle is a part of, by its name: "right.3" is of right, "ball" is the thing itself.
         things = dict.fromkeys(f"the {hit.name.rpartition('.')[0] or hit.name}" for hit in hits if hit.frozen)

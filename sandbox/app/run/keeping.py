@@ -14,7 +14,7 @@ EVERY, SOON = 2.0, 0.5
 
 
 class SceneKeeping:
-    """What becomes of runs; `before` is how the one stood that left the screen last."""
+    """Keeps runs on the shelf; `before` is the one that left the screen last."""
 
     def __init__(self) -> None:
         self.shelf = SceneShelf()

@@ -50,7 +50,7 @@ GIVEN_UP = "Cancelled. The run did not change."
 
 
 class Listener(Protocol):
-    """Who is told of every tick of a run; it reads and never writes."""
+    """A follower of every tick of a run; it reads and never writes."""
 
     def hear(self, world: LevelWorld) -> None:
         """Take in the world after a tick."""
@@ -120,7 +120,7 @@ class Playback:
 
     @property
     def outcome(self) -> str:
-        """What came of a replay that was watched, while the run is at its end or no longer follows it; else ""."""
+        """The verdict on a replay that was watched, while the run is at its end or no longer follows it; else ""."""
         return self.verdict if self._taken_over or self.session.tick == self.length else ""
 
     @property
@@ -428,7 +428,7 @@ class Playback:
         return True
 
     def _note_events(self) -> None:
-        """Tell what broke, and what was stopped, in words for a person, in place of the session's."""
+        """Take the lines of breaks and stops in place of the session's messages."""
         world, events = self.session.world, self.session.events
         # Of a past that is played again the session says nothing.
         said = {*break_lines(world), *map(str, world.contained)}

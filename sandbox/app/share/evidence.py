@@ -96,7 +96,7 @@ def write_sides(sides: Sequence[Shown], path: Path) -> None:
 
 
 def write_motion(comparison: Comparison, path: Path) -> None:
-    """What both runs do around that tick, into a GIF; both are advanced. Raises OSError, and Missing without Pillow."""
+    """Write both runs around that tick into a GIF; both are advanced. Raises OSError, and Missing without Pillow."""
     require("gif")
     from sandbox.app.share.gif import GifWriter
 

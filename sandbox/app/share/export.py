@@ -30,7 +30,7 @@ Slices = Generator[float, None, None]
 
 @dataclass(frozen=True)
 class Excerpt:
-    """What is kept of a film: start..end [s from its beginning], of a PNG its end; size [pixels].
+    """The part of a film that is kept: start..end [s from its beginning], of a PNG its end; size [pixels].
 
     name: a text in the corner of every picture.
     """
@@ -217,7 +217,7 @@ class MovieWriter:
         self._errors.close()
 
     def _refusal(self) -> OSError:
-        """What ffmpeg says, in a line: the first thing that it complains of."""
+        """The first line of ffmpeg's complaints."""
         self._errors.seek(0)
         lines = self._errors.read().decode(errors="replace").splitlines()
         # Before the words stands which of its parts says them.

@@ -91,7 +91,7 @@ class SharePage:
 
 
 class ShareForm:
-    """What is on the page at one step of sharing, in one window; reopen: called where it is laid out again."""
+    """The form of one step of sharing, in one window; reopen: called where it is laid out again."""
 
     def __init__(
         self, ui: Ui, sharing: Sharing, leave: Callable[[], None], reopen: Callable[[Ui], None],
@@ -299,7 +299,7 @@ class FilmPreview(Widget):
 
 
 class ProgressBar(Widget):
-    """How much is done, 0..1."""
+    """A bar filled to a fraction, 0..1."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
         super().__init__(ui, rect, container)

@@ -56,7 +56,7 @@ DIGITS = 4
 
 
 class Playable(NamedTuple):
-    """What a page plays: its title, what there is to do as its level says it, and all that scripts open."""
+    """The content of a page: its title, its hints as the level gives them, and what the script opens."""
 
     title: str
     hints: str
@@ -118,7 +118,7 @@ def _checks(level: Level, world: World) -> list[dict[str, Any]]:
 
 
 def _goals(level: Level, world: World) -> dict[str, Any]:
-    """What a page shows of the goal of a level, of its counters, and of what hands have left."""
+    """A level's goal and counters, and the budgets of its hands, as a page shows them."""
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
     counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
     return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules)}
@@ -152,7 +152,7 @@ def _header(level: Level) -> str:
 
 
 def _sounds(world: LevelWorld) -> dict[str, Any]:
-    """What bodies sound like, stuffs by their modes, and motors that hum."""
+    """The sounds of bodies, materials by their modes, and motors that hum."""
     bodies, motors = timbres_of(world), world.actuators.motors
     rows = [
         (motors.rim[motors.rim_start[k] : motors.rim_start[k + 1]].tolist(), k) for k in range(len(motors.part))

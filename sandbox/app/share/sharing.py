@@ -51,7 +51,7 @@ Step = Literal["choose", "work", "done"]
 
 @dataclass(frozen=True)
 class Choices:
-    """What the person has chosen: kind, start..end [s of the film], size, whether the level is named, the file's name.
+    """The person's choices: kind, start..end [s of the film], size, whether the level is named, the file's name.
 
     own_name: whether the name was typed.
     """
@@ -66,7 +66,7 @@ class Choices:
 
 
 class Sharing:
-    """What the app shares, one thing at a time; `update` goes on with it a slice a frame.
+    """Makes the files that are shared, one at a time; `update` goes on with the present one a slice a frame.
 
     is_open: whether its page is. film: the run's last seconds, when that was opened. pictures: of the preview, as far
     as there are any. note: what there is to say. done: how much is written, 0..1. saved: the file, once it is there.
@@ -290,7 +290,7 @@ class Sharing:
         self._shown_at += frame_time
 
     def shown_picture(self) -> pygame.Surface | None:
-        """What the preview shows at the moment: the film from start to end, over and over."""
+        """The preview's present picture: the film from start to end, over and over."""
         if self._export is not None and self._slices is not None:
             return self._export.picture
         if not self.pictures:

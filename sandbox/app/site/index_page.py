@@ -114,7 +114,7 @@ def link_list(links: Mapping[str, str]) -> str:
 
 
 def _preloads(hero: SiteLevel) -> str:
-    """What the toy at the top needs, all at once and not one after the other."""
+    """Links that let the toy at the top load all its files at once."""
     files = f"{SCRIPTS}/{KERNELS.name}.gz", hero.toy
     return "".join(f'<link rel="preload" as="fetch" crossorigin href="{at}">\n' for at in files)
 
@@ -159,7 +159,7 @@ def _picture(each: SiteLevel, before: str = "") -> str:
 
 
 def _around(level: Level, state: Snapshot) -> Box:
-    """What moves at first [m], with room above and below it for where it goes, as far as the level is shown at all."""
+    """The box [m] of what moves at first, with margins above and below, as far as the level is shown at all."""
     left, low, right, high = particles_of(state)
     _, bottom, _, top = view_of(level, state)
     margin = ROOM * (high - low)

@@ -50,7 +50,7 @@ def _row(name: str, value: Any, change: ChangeExtras) -> Property:
 
 
 def _kind_of(value: Any) -> Kind | None:
-    """What kind of field a value has; None where it can be looked at alone."""
+    """The kind of form field that a value gets; None where it is shown without being editable."""
     if value is MIXED:
         return "text"
     if isinstance(value, bool):

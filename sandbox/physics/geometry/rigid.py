@@ -24,7 +24,7 @@ class WeightedSums(NamedTuple):
 
 
 class RigidMotion(NamedTuple):
-    """A motion as a whole: of the place (x, y) [m], at (u, v) [m/s], with the inertia [kg m^2] and the angular momentum
+    """Rigid motion of points: centre of mass (x, y) [m], velocity (u, v) [m/s], inertia [kg m^2] and angular momentum
     [kg m^2/s] about that.
     """
 
@@ -37,7 +37,7 @@ class RigidMotion(NamedTuple):
 
 
 class FormFit(NamedTuple):
-    """How a form fits places: the middle of those (x, y) [m] and that of the form, and both sums of the best turn."""
+    """Fit of a form to places: the middle of those (x, y) [m] and that of the form, and both sums of the best turn."""
 
     x: float
     y: float

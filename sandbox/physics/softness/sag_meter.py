@@ -69,7 +69,7 @@ class MeasuredBody:
 
 
 class SagMeter:
-    """Answers of one body as it is held; what is not known yet is asked for, and `advance` goes on with the work.
+    """Measures how far a body sags at pairs of Cs and Cd; questions are queued, and `advance` works on them.
 
     What was asked last comes first, and the curve after all that somebody waits for.
 

@@ -74,11 +74,11 @@ class Comparison:
 
     @property
     def telling_slots(self) -> tuple[int, int] | None:
-        """The particle that is farthest away then, by its slots in both runs; None where no eye sees that."""
+        """Slots in both runs of the particle farthest away at `telling_tick`; None where no eye sees that."""
         return self.distance.slots if self.distance is not None and self.distance.is_visible else None
 
     def cause(self) -> str:
-        """What is known of why they part, in a line: edits, or what was written by hand; else the first difference."""
+        """Why the runs part, in a line: edits, or arrays written by hand; else the first difference."""
         if self.edits:
             more = f" and {len(self.edits) - 1} more" if len(self.edits) > 1 else ""
             return f"{self.edits[0]}{more}"

@@ -291,7 +291,7 @@ def _place(array: str, left: Left, world: World) -> str:
 
 
 def recording_text(replay: Replay) -> str:
-    """The whole text, with the hash of the end as its last line."""
+    """The lines of a recording as one text, the hash of its end last."""
     return "".join(f"{line}\n" for line in _lines(replay))
 
 

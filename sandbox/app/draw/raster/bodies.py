@@ -113,7 +113,7 @@ def _raise_skin(scratch: BodyScratch, width: int, height: int, wide: int, tall: 
 def _splat(
     flush: Flush, first: int, last: int, scratch: BodyScratch, wide: int, tall: int, x0: float, y0: float
 ) -> None:
-    """The flush of one body in cells of FLUSH_CELL pixels, -FLUSH_FULL..FLUSH_FULL."""
+    """Find the flush of one body in cells of FLUSH_CELL pixels, -FLUSH_FULL..FLUSH_FULL."""
     field, weight = scratch.field, scratch.weight
     for k in range(wide * tall):
         field[k], weight[k] = 0.0, 0.25
@@ -144,7 +144,7 @@ def _grainy(colour: int, amount: int) -> int:
 
 @inner_kernel
 def _find_texels(row: int, first: int, last: int, scratch: BodyScratch, place: Slots) -> None:
-    """Where in its table the colour of each pixel of a run lies; place: see _light_row."""
+    """Find the place in the table of the colour of each pixel of a run; place: see _light_row."""
     high, middle, fall, texel = scratch.high, scratch.middle, scratch.fall, scratch.texel
     tall, reach, edge = place[4], place[5], place[9]
     gain = 1.3 * reach * 256.0 / 3.0
@@ -173,7 +173,7 @@ def _find_texels(row: int, first: int, last: int, scratch: BodyScratch, place: S
 
 @inner_kernel
 def _find_amounts(row: int, scratch: BodyScratch, place: Slots) -> None:
-    """How much of the flush lies over each pixel of a row, of 256; below 0 where it is squeezed."""
+    """Find the flush's opacity over each pixel of a row, of 256; below 0 where the body is squeezed."""
     field, amount, wide = scratch.field, scratch.amount, place[6]
     jy = min(row // FLUSH_CELL, place[7] - 2)
     part = row / FLUSH_CELL - jy
@@ -269,7 +269,7 @@ def _paint_side(
     alpha: float,
     clip: Slots,
 ) -> None:
-    """A side of a closed line from a to b, the one before it from o to a; no pixel is covered by both.
+    """Draw a side of a closed line from a to b, the one before it from o to a; no pixel is covered by both.
 
     What lies beyond b is the next side's, what lies beside the one before is that one's, and what lies between both,
     round the corner a, is this one's: sides laid over each other would look like beads.

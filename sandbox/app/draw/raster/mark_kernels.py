@@ -53,7 +53,7 @@ def from_segment(along: float, across: float, length: float) -> float:
 def paint_segment(
     pixels: Pixels, ax: float, ay: float, bx: float, by: float, half: float, colour: int, alpha: float, clip: Slots
 ) -> None:
-    """A capsule: coverage of a pixel centre at distance d from the segment is clamp(half + 1/2 - d, 0, 1)."""
+    """Draw a capsule: a pixel centre at distance d from the segment is covered by clamp(half + 1/2 - d, 0, 1)."""
     reach = half + 0.5
     dx, dy = bx - ax, by - ay
     length = math.sqrt(dx * dx + dy * dy)

@@ -161,7 +161,7 @@ class Loops(NamedTuple):
 
 @inner_kernel
 def _grow(pixels: FloatRows, loops: Loops, c: int, grow: float, point: FloatRows) -> None:
-    """The corners of a loop moved outwards along their normals."""
+    """Move the corners of a loop outwards along their normals."""
     first, last, out = loops.start[c], loops.start[c + 1], loops.point_start[c]
     area = 0.0
     for k in range(first, last):

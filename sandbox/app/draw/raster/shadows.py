@@ -27,7 +27,7 @@ class ShadowScratch(NamedTuple):
 
 
 class Thrown(NamedTuple):
-    """What throws it: lines (m, 5) = both ends and half width; discs (k, 3) = centre and radius, all [pixels]."""
+    """Shapes that throw shadows: lines (m, 5) = both ends and half width; discs (k, 3) = centre and radius [pixels]."""
 
     lines: FloatRows
     discs: FloatRows

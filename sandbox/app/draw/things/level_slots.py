@@ -105,7 +105,7 @@ class Piece(NamedTuple):
 
 
 class Filling(NamedTuple):
-    """What of a filled body is left: its pieces, the largest first, and the springs (m,) inside any of them.
+    """The rest of a filled body: its pieces, the largest first, and the springs (m,) inside any of them.
 
     key: which springs and triangles were there, as bytes.
     """
@@ -163,7 +163,7 @@ class Actor:
         return np.asarray(self.made.form - self.made.form.mean(axis=0))
 
     def filling(self, there: Mask, whole: Slots | None = None) -> Filling:
-        """What is left of it, where these springs (m,) are there.
+        """The rest of the body's filling, where these springs (m,) are there.
 
         whole: triangles (t, 3) of the world that keep their areas, by slot. A body that keeps no areas, or of a world
         that says nothing of them, has a triangle while the springs along all its sides are there.

@@ -61,7 +61,7 @@ class Members:
         self.count += len(bars.pairs)
 
     def add_actor(self, actor: Actor, there: NDArray[np.bool_]) -> None:
-        """The springs of a body that are there (m,), as bars; what hangs from filled pieces has no bolts."""
+        """Add the springs of a body that are there (m,), as bars; what hangs from filled pieces has no bolts."""
         ends, springs, look = actor.ends[there], actor.springs[there], actor.look
         if not len(ends) or look.line == "hidden":
             return

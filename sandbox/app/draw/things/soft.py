@@ -68,7 +68,7 @@ class _Layer:
 
 @dataclass(eq=False)
 class _Flushed:
-    """Who shows strain: slot (k,) of particles, body row by row; springs (m,), ends (m, 2), degree (n,)."""
+    """Bodies that show strain: slot (k,) of particles, body row by row; springs (m,), ends (m, 2), degree (n,)."""
 
     slot: Slots
     start: Slots
@@ -291,7 +291,7 @@ class Sheets:
         self._pictures: list[NDArray[np.int64]] = []
 
     def add(self, actor: Actor, triangles: Slots, loops: list[Slots], there: NDArray[np.bool_]) -> None:
-        """A body of which triangles (t, 3) of indices are left, inside loops of slots."""
+        """Add a body of which triangles (t, 3) of indices are left, inside loops of slots."""
         look, spacing = actor.look, float(actor.body.__dict__.get("spacing", actor.cell))
         is_cloth = look.skin == "cloth"
         form = actor.made.local_form[0]

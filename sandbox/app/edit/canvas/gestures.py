@@ -42,7 +42,7 @@ LASSO_STEP = 4.0
 
 @dataclass(frozen=True)
 class Scaling:
-    """How a selection is scaled: factors about a point [m]."""
+    """The scaling of a selection: factors about a point [m]."""
 
     x: float
     y: float
@@ -57,7 +57,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Turn:
-    """How a selection is turned: an angle [rad], counter-clockwise, about a point [m]."""
+    """The turn of a selection: an angle [rad], counter-clockwise, about a point [m]."""
 
     angle: float
     centre: Point
@@ -103,7 +103,7 @@ class Handles:
         return min(near, key=lambda name: math.dist(places[name], pixel), default=None)
 
     def scaling(self, name: str, start: Point, now: Point, even: bool, about_centre: bool) -> Scaling:
-        """What a drag of a square from one point [m] to another does; even: both sides alike."""
+        """The scaling by a drag of a square from one point [m] to another; even: both sides alike."""
         left, bottom, right, top = self.box
         sx, sy = SIDES[name]
         middle = ((left + right) / 2, (bottom + top) / 2)
@@ -119,7 +119,7 @@ class Handles:
         return Scaling(fx, fy, fixed)
 
     def turn(self, start: Point, now: Point, free: bool) -> Turn:
-        """What a drag of the knob from one point [m] to another does; free: not only round angles."""
+        """The turn by a drag of the knob from one point [m] to another; free: not only round angles."""
         left, bottom, right, top = self.box
         x, y = (left + right) / 2, (bottom + top) / 2
         angle = math.atan2(now[1] - y, now[0] - x) - math.atan2(start[1] - y, start[0] - x)

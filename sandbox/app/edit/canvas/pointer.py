@@ -59,7 +59,7 @@ class SelectTool:
 
     @property
     def hint(self) -> str:
-        """What keys and clicks do now: for the selection, the corners of terrain, or the ends of a body."""
+        """A line about what keys and clicks do now: for the selection, corners of terrain, or the ends of a body."""
         if self.corner is not None:
             return "Drag the corner or use the arrow keys; Delete removes it; drag a dot between corners to add one"
         if self.piece is not None and self._gesture is None:
@@ -81,7 +81,7 @@ class SelectTool:
         return self._entered
 
     def _taken(self, items: Selection) -> Selection:
-        """What picking items takes: these alone inside the group that was entered, else with the whole of their groups.
+        """The items that a pick takes: these alone inside the entered group, else with the whole of their groups.
 
         What is picked outside leaves the group.
         """

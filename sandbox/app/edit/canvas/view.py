@@ -141,7 +141,7 @@ class View:
         self._painter.paint_ghost(surface, screen.camera, Part(drawn, drawn.particles_of(new), drawn.springs_of(new)))
 
     def _name_of(self, item: Item | None) -> str:
-        """What a loose spring or particle under the pointer is called, and of a particle its mass and radius."""
+        """The name of a loose spring or particle under the pointer, and of a particle its mass and radius."""
         level = self._screen.document.level
         if item is None or item.kind not in ("spring", "particle"):
             return ""

@@ -147,7 +147,7 @@ class OptionsRow(PropertyWidgets):
         return self._ui.font(LABELS["muted"].size).size(text)[0] / self._ui.scale
 
     def _width_of(self, each: Property) -> float:
-        """What a property takes, with its title and the gaps after them."""
+        """Width of a property, with its title and the gaps after them."""
         if each.about.kind == "yes_no":
             return self._text_width(each.about.title) + FLAG_ROOM + LABEL_GAP
         return self._text_width(title_of(each)) + 4 + LABEL_GAP + self._entry_width(each) + self._gap_after(each)

@@ -181,7 +181,7 @@ def coarse_first(side: int) -> list[int]:
 
 
 def measures_of(level: Level) -> dict[str, str]:
-    """What a pad can show of sweeps of a level: names of figures by what a person reads."""
+    """The measures of a level's sweeps that a pad can show: names of figures by what a person reads."""
     figures = SweepGrid(level, {CS: (1.0,)}, 1).figures
     return {measure_of(figure).title.partition(" [")[0].capitalize(): figure for figure in figures}
 

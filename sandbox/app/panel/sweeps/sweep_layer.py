@@ -54,7 +54,7 @@ def measure_of(figure: str) -> SweepMeasure:
 
 
 def shown_values(figure: str, values: Mapping[str, Floats]) -> Floats:
-    """What a map shows of the values of all measures: NaN where a run blew up, which says all of it."""
+    """The values that a map shows of each measure: NaN where a run blew up, which says all of it."""
     if measure_of(figure).is_flag:
         return values[figure]
     return np.where(values["blew_up"] > 0.0, np.nan, values[figure])
@@ -136,7 +136,7 @@ class SweepLayer:
         return np.stack([np.interp(place, stops, STOPS[:, k]) for k in range(3)], axis=1).astype(np.uint8)
 
     def text_at(self, stiffness: float, damping: float) -> str:
-        """What is known of the cell that a Cs and Cd lie in, in a few words."""
+        """The results in the cell of a Cs and Cd, in a few words."""
         across, up = (int(_cells(axis, np.array([value]))[0]) for axis, value in
                       ((self.stiffness, stiffness), (self.damping, damping)))  # fmt: skip
         if across < 0 or up < 0:
@@ -198,14 +198,14 @@ def limits_of(zones: CoefficientZones) -> list[list[tuple[float, float]]]:
 
 
 def paint_line(surface: pygame.Surface, points: list[Point], width: int) -> None:
-    """A light line in a dark one."""
+    """Draw a light line in a dark one."""
     if len(points) > 1:
         pygame.draw.lines(surface, DARK, False, points, 3 * width)
         pygame.draw.lines(surface, LIGHT, False, points, width)
 
 
 def paint_scale(surface: pygame.Surface, layer: SweepLayer, place: pygame.Rect, ui: WindowLayout) -> None:
-    """The colours of a measure with their numbers, and what patterns mean, in a place of two lines."""
+    """Draw the colours of a measure with their numbers, and the meaning of patterns, in a place of two lines."""
     font, px, measure = ui.font(NUMBER_SIZE), ui.px, layer.measure
     bar = pygame.Rect(place.left, place.top, place.width, px(BAR_HEIGHT))
     low, high, is_wide = layer.scale
