@@ -35,18 +35,18 @@ End = tuple[str, str]
 class Held:
     """A document whose joins hold, and the pairs of particles, by name, that are joined no longer.
 
-    is_still: whether joins undid all that the edit did.
+    is_undone: whether joins undid all that the edit did.
     """
 
     document: Document
     let_go: tuple[Weld, ...] = ()
 
-    is_still: bool = False
+    is_undone: bool = False
 
     @property
     def notice(self) -> str:
         """A line for the person: which joins were let go, or that joins keep all in place; "" where there is none."""
-        if self.is_still:
+        if self.is_undone:
             return "Nothing moved: its joins hold it. Select what it is joined to too, or take its joints apart (K)."
         pairs = dict.fromkeys(tuple(shown(owner_of(name)) for name in pair) for pair in self.let_go)
         if not pairs:
@@ -63,7 +63,7 @@ def with_joins_held(before: Level, document: Document) -> Held:
     work = _Holding(before, level)
     now = work.held()
     if now == before:
-        return Held(replace(document, level=before), is_still=True)
+        return Held(replace(document, level=before), is_undone=True)
     return Held(replace(document, level=now), tuple(work.let_go))
 
 

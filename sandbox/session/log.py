@@ -71,13 +71,13 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """A state that a run had when this was its whole history. idle: the entries of it that had no effect.
+    """A state that a run had when this was its whole history. ineffective: the entries of it that had no effect.
 
     tick_events: what happened until then.
     """
 
     history: list[LogEntry]
-    idle: list[LogEntry]
+    ineffective: list[LogEntry]
     tick_events: EventsByTick
     state: Snapshot
 
@@ -92,7 +92,7 @@ class Reached:
         """Set of each command of the history whether it had an effect."""
         for entry in self.history:
             entry.in_effect = True
-        for entry in self.idle:
+        for entry in self.ineffective:
             entry.in_effect = False
 
 

@@ -286,8 +286,8 @@ class RunHistory:
         """Keep the present state at the end of the run: an undo of the next command, or a redo, leads through it."""
         if world.tick < self.last_tick:
             return
-        idle = [entry for gesture in self.hindered for entry in self.entries[gesture] if not entry.in_effect]
-        self.reached.keep(Reached(list(self.timeline), idle, dict(self.tick_events), take(world)))
+        ineffective = [entry for gesture in self.hindered for entry in self.entries[gesture] if not entry.in_effect]
+        self.reached.keep(Reached(list(self.timeline), ineffective, dict(self.tick_events), take(world)))
 
     def drop_states_after(self, order: int, tick: int) -> None:
         """Drop the states that no longer hold, as the timeline is another from an order on.

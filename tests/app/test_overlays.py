@@ -191,10 +191,10 @@ def test_the_lattice_dashes_what_has_yielded_and_crosses_where_something_broke()
 
     effects, camera = Effects(), Camera()
     effects.see(soft.snapshot(), 0.0, None)
-    assert effects.is_still
+    assert effects.is_at_rest
     soft.advance()
     soft.world.cut([3])
     effects.see(soft.snapshot(), 0.1, None)
     layer = MarkList()
     effects.mark_breaks(layer, camera, THEMES["dark"], 1.0)
-    assert len(layer.arrays().kind) == 4 and not effects.is_still
+    assert len(layer.arrays().kind) == 4 and not effects.is_at_rest

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pygame
 import pytest
 
-from sandbox.app.base.idle import Stillness
+from sandbox.app.base.idle import RestTimer
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.toy import toy_start
 from sandbox.app.toy.toy import DROWSY, FARTHEST, FASTEST, HARDEST, WATCHED, FrameMotion, Toy
@@ -159,14 +159,14 @@ def test_it_sleeps_while_nothing_moves_and_wakes_when_the_pointer_comes(desk, mo
 
 def test_its_stillness_is_that_of_its_stage_measured_once_a_frame_for_all_of_its_time(desk, monkeypatch):
     one = desk()
-    measured, follow = [], Stillness.follow
-    monkeypatch.setattr(Stillness, "follow", lambda *given: measured.append(given[3]) or follow(*given))
+    measured, follow = [], RestTimer.follow
+    monkeypatch.setattr(RestTimer, "follow", lambda *given: measured.append(given[3]) or follow(*given))
     tick = one.tick
     for seconds in (0.004, 0.05, 0.03):
         one.toy.frame(seconds)
     assert one.tick > tick + 2 and measured == pytest.approx([0.004, 0.05, 0.03])
     one.sleep()
-    assert one.toy.stage.stillness.lasted >= DROWSY
+    assert one.toy.stage.rest_timer.lasted >= DROWSY
 
 
 def test_what_has_slept_has_forgotten_its_history(desk):

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 
-# It is calm once nothing has happened for this long [s]; then this many frames a second are enough, and this many of a
-# run that goes on at rest: with fewer of them each would have more ticks to make than it has time for.
+# Idle is who has done nothing for this long [s]; then this many frames a second are enough, and this many of a run that
+# goes on at rest: with fewer of them each would have more ticks to make than it has time for.
 IDLE_AFTER, IDLE_RATE, RESTING_RATE = 1.0, 10, 20
 # How often it is looked for events meanwhile [s]: a person who comes back waits no longer. Where the library waits by
 # itself it looks every millisecond, which costs four times as much.
@@ -22,16 +22,16 @@ class IdleTimer:
     """Idle time of the person: has_come once nothing was pressed and nothing moved for IDLE_AFTER."""
 
     def __init__(self) -> None:
-        self._quiet = 0.0
+        self._idle = 0.0
 
     @property
     def has_come(self) -> bool:
         """Whether nothing has happened for a while."""
-        return self._quiet >= IDLE_AFTER
+        return self._idle >= IDLE_AFTER
 
     def follow(self, frame_time: float, is_busy: bool) -> None:
         """Let a frame of frame_time [s] pass, in which something has happened or moved, or not."""
-        self._quiet = 0.0 if is_busy else self._quiet + frame_time
+        self._idle = 0.0 if is_busy else self._idle + frame_time
 
 
 def wait_for_event(longest: float) -> bool:
@@ -49,7 +49,7 @@ def wait_for_event(longest: float) -> bool:
 _UNSEEN, _LOOK = 0.6, 0.5
 
 
-class Stillness:
+class RestTimer:
     """How long everything in the run has been at rest, as seen on the screen: lasted [s]."""
 
     def __init__(self) -> None:

@@ -226,7 +226,7 @@ class CompareScreen(PlayScreen):
         super().update(frame_time, None if pointer is None else self._in_first(pointer), profile)
         with profile.part("ticks"):
             self.other.follow(self.playback.session.tick)
-        self.beside.stillness.follow(self.other.current, self.camera.zoom, frame_time)
+        self.beside.rest_timer.follow(self.other.current, self.camera.zoom, frame_time)
         super()._measure(self._ticks_made, profile)
         self.difference.update(self.playback.current, self.other.current)
         self._show_ghost()

@@ -65,7 +65,7 @@ class Effects:
         self._drops = _Motes(MOST_DROPS)
 
     @property
-    def is_still(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Whether nothing flies about."""
         return not any(len(motes.rows) for motes in (self._sparks, self._dust, self._crosses, self._drops))
 

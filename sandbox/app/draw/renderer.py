@@ -213,7 +213,7 @@ class Renderer:
             self._belts, self._body_belts = current.belt, body_belts(current)
         shown, drawables = self.overlays.shown, None if self._things is None else self._things.drawables
         belts = self._ground_belts or self._body_belts
-        moves = not self.effects.is_still or bool(belts or self._pools.flow)
+        moves = not self.effects.is_at_rest or bool(belts or self._pools.flow)
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),

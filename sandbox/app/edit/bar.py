@@ -243,11 +243,11 @@ def _actions(screen: Editing, pixel: Pixel, names: tuple[str, ...]) -> list[_Ent
         screen.actions[name]()
 
     selection, groups = screen.document.selection, groups_of(screen.document.level)
-    idle = {"group"} if len(selection) < 2 else set()
-    idle |= {"ungroup"} if not selection.intersection(groups) else set()
+    disabled = {"group"} if len(selection) < 2 else set()
+    disabled |= {"ungroup"} if not selection.intersection(groups) else set()
     entries = []
     for name in names:
-        if name in idle:
+        if name in disabled:
             continue
         entry = by_name[name]
         label = SHORT.get(name, entry.label) if names is OVER_THINGS or name not in ("hide", "lock") else entry.label

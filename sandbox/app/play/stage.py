@@ -7,7 +7,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.base.idle import Stillness
+from sandbox.app.base.idle import RestTimer
 from sandbox.app.base.loop import Profile
 from sandbox.app.draw.camera import Box, Camera, bounds
 from sandbox.app.draw.picture import PartGhost, particles_of, view_of
@@ -67,7 +67,7 @@ class Stage:
         self.following = Following()
         self._ghost = PartGhost()
         self.detail = Detail()
-        self.stillness = Stillness()
+        self.rest_timer = RestTimer()
         # What is drawn however long frames take; None: as `detail` has it.
         self.fixed_detail: int | None = None
         self._make_tools("normal")
@@ -331,7 +331,7 @@ class Stage:
     @property
     def rests(self) -> bool:
         """Whether nothing has been seen to move for a while, nothing flies about, and no hand holds anything."""
-        has_stood = self.stillness.lasted >= AT_REST_AFTER and self.renderer.effects.is_still
+        has_stood = self.rest_timer.lasted >= AT_REST_AFTER and self.renderer.effects.is_at_rest
         return has_stood and not self.playback.session.world.any_held()
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, passed: float = 0.0) -> None:
@@ -355,7 +355,7 @@ class Stage:
             self.following.update(self.camera, self.playback.session.world, self.playback.current, frame_time)
         self._go_along()
         self.playback.activity.note(self.playback.current)
-        self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
+        self.rest_timer.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         at = None if pointer is None else self.camera.to_world(pointer)
         self.tool.hover(at if self.cursor is None else self.cursor)
         within = PICK_RADIUS * self.renderer.scale / self.camera.zoom

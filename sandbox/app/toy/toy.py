@@ -58,7 +58,7 @@ class Toy:
         if record is not None:
             self.playback.session.record_to(record)
         self.motion = FrameMotion()
-        self.rest = Rest()
+        self.sleep_timer = SleepTimer()
         self.choices = ToyChoices(chosen, window.desk.kept.get("sound"))
         self.sounds = Sounds(self.choices, time.perf_counter)
         self.profile = Profile()
@@ -102,7 +102,7 @@ class Toy:
 
     @property
     def _is_played(self) -> bool:
-        return self._pressed or not self.motion.rests or self.rest.moves_fast
+        return self._pressed or not self.motion.rests or self.sleep_timer.moves_fast
 
     def frame(self, seconds: float) -> None:
         """One frame: events, ticks, a picture; asleep: events alone."""
@@ -114,8 +114,8 @@ class Toy:
         # A window that is shown for the first time sends events as well: only what a person does wakes it.
         held = any(is_held for _, is_held in self._keys.shown())
         if moved or held or self._pressed or any(event.type in WAKING for event in events):
-            self.rest.disturb()
-        if self.rest.is_over and self.motion.rests:
+            self.sleep_timer.disturb()
+        if self.sleep_timer.is_due and self.motion.rests:
             if not self.asleep:
                 self._fall_asleep()
             return
@@ -127,8 +127,8 @@ class Toy:
 
     def _pass_time(self, seconds: float) -> None:
         self._tick(seconds)
-        stood = self.stage.stillness.lasted
-        self.rest.follow(self.playback.current, self.camera.zoom, seconds, self.hovered, stood)
+        rested = self.stage.rest_timer.lasted
+        self.sleep_timer.follow(self.playback.current, self.camera.zoom, seconds, self.hovered, rested)
         # A toy has no line of words: what broke can be seen.
         self.playback.messages.clear()
         self.sounds.update(self, True)
@@ -395,27 +395,27 @@ DROWSY, WATCHED = 2.0, 12.0
 FAST = 40.0
 
 
-class Rest:
-    """Follows snapshots; is_over: the toy may sleep; moves_fast: something is fast enough for every frame to count."""
+class SleepTimer:
+    """When a toy falls asleep: is_due, once nothing moves and nobody acts; moves_fast: something is fast enough for every frame to count."""
 
     def __init__(self) -> None:
         self.moves_fast = True
-        self._stood = self._calm = 0.0
+        self._rested = self._idle = 0.0
         self._hovered = False
 
     @property
-    def is_over(self) -> bool:
+    def is_due(self) -> bool:
         """Whether nothing moves, and nobody has done anything for a while."""
-        return self._stood >= DROWSY and self._calm >= (WATCHED if self._hovered else DROWSY)
+        return self._rested >= DROWSY and self._idle >= (WATCHED if self._hovered else DROWSY)
 
     def disturb(self) -> None:
         """Somebody does something."""
-        self._calm = 0.0
+        self._idle = 0.0
 
-    def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool, stood: float) -> None:
-        """Take in the state after a frame of `seconds`, a metre being `zoom` pixels; all has stood for `stood` [s]."""
-        self._hovered, self._stood = hovered, stood
-        self._calm += seconds
+    def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool, rested: float) -> None:
+        """Take in the state after a frame of `seconds`, a metre being `zoom` pixels; all has been at rest for `rested`."""
+        self._hovered, self._rested = hovered, rested
+        self._idle += seconds
         free = shown_particles(now) & (now.inverse_mass > 0.0)
         with np.errstate(over="ignore", invalid="ignore"):
             fastest = np.abs(now.velocity[free]).max(initial=0.0)

@@ -89,8 +89,8 @@ def idle_items(scene: Scene) -> Rule:
     """Loose springs between two pinned particles, and pinned loose particles that hold nothing and touch nothing."""
     bodies = len(scene.level.bodies)
     loose = np.flatnonzero(scene.spring_item >= bodies + len(scene.level.particles))
-    idle = loose[scene.pinned[scene.particle_a[loose]] & scene.pinned[scene.particle_b[loose]]]
-    for spring in idle.tolist():
+    held = loose[scene.pinned[scene.particle_a[loose]] & scene.pinned[scene.particle_b[loose]]]
+    for spring in held.tolist():
         item = scene.items[int(scene.spring_item[spring])]
         text = f"{called(scene.level, item)} does nothing: both its ends are pinned; unpin one or delete it"
         many = "{count} springs do nothing: both their ends are pinned; unpin one or delete them"
