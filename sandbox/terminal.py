@@ -75,7 +75,7 @@ def size(text: str) -> tuple[int, int]:
 
 
 class _NamedFile(io.FileIO):
-    """What a stream writes to; an error in writing carries the stream's name, as those of other files do theirs."""
+    """A stream whose errors in writing carry its name, as those of other files do theirs."""
 
     def __init__(self, stream: io.TextIOWrapper, name: str) -> None:
         super().__init__(stream.fileno(), "w", closefd=False)
@@ -121,7 +121,7 @@ def _named(stream: Any, name: str) -> Any:
 
 
 def missing_folder() -> str | None:
-    """What to say where the folder that this was started in is gone; no relative path, no compiler works in one."""
+    """The message for a working folder that is gone: no relative path, no compiler works in one."""
     try:
         os.getcwd()
     except OSError as error:

@@ -57,7 +57,7 @@ class OpenLine:
 
 @dataclass
 class LeftOut:
-    """What of a file did not come in: how many of what, by names in the singular."""
+    """Counts of the things of a file that were left out, by names in the singular."""
 
     counts: Counter[str] = field(default_factory=Counter)
 

@@ -63,7 +63,7 @@ _CUBIC = np.concatenate([(1 - _T) ** 3, 3 * _T * (1 - _T) ** 2, 3 * _T**2 * (1 -
 
 @dataclass(frozen=True)
 class Style:
-    """What an element inherits: paints as they are written, and whether it is seen."""
+    """The style that an element inherits: paints as they are written, and whether it is seen."""
 
     fill: str = "black"
     stroke: str = "none"
@@ -176,7 +176,7 @@ class _Reader:
             self._take_stroke(ways, matrix, style, name)
 
     def _take_stroke(self, ways: list[tuple[Ring, bool]], matrix: NDArray[np.float64], style: Style, name: str) -> None:
-        """A stroke without a filling: what it goes around is inside, an open one is a line."""
+        """Add a stroke without a filling: closed, it is filled, open, it is a line."""
         tint = self._colour(style.stroke, style)
         found = _NUMBER.match(style.stroke_width)
         width = float(found[0]) * float(np.sqrt(abs(np.linalg.det(matrix[:2, :2])))) if found else 1.0
@@ -259,7 +259,7 @@ def _page(root: Element) -> tuple[float, float, float, float]:
 
 
 def _style_sheet(root: Element, left_out: LeftOut) -> Sheet:
-    """What the style elements of a drawing say, by ".class", "#id" or the name of elements."""
+    """The style elements of a drawing: their rules by ".class", "#id" or the name of elements."""
     found: Sheet = {}
     for element in root.iter():
         if local_name(element) != "style" or not element.text:
@@ -283,7 +283,7 @@ def _declarations(text: str) -> dict[str, str]:
 
 
 def _own_properties(element: Element, sheet: Sheet) -> dict[str, str]:
-    """What an element says of itself; its style attribute counts most, then its id, its classes and its name."""
+    """The properties of an element itself; its style attribute counts most, then its id, its classes and its name."""
     found = {key: value.strip() for key, value in element.attrib.items() if key in READ or key in UNFOLLOWED}
     classes = element.get("class", "").split()[:20]
     for selector in (local_name(element), *(f".{name}" for name in classes), f"#{element.get('id', '')}"):

@@ -74,7 +74,7 @@ def read_tiled(data: Object, beside: Beside) -> Sketch:
 
 
 class _Tiles:
-    """What tiles are: their collision shapes, and whether they are marked as solid."""
+    """Properties of tiles: their collision shapes, and whether they are marked as solid."""
 
     def __init__(self, data: Object, beside: Beside, drawing: Sketch) -> None:
         self.shapes: dict[int, list[Object]] = {}

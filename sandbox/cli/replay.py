@@ -47,7 +47,7 @@ class ReplayOptions:
 
 @dataclass(frozen=True)
 class Verified:
-    """What came of a recording: the exit code, and what is told of it."""
+    """The result of a recording: the exit code, and its report."""
 
     code: int
     report: dict[str, Any]

@@ -79,7 +79,7 @@ def shrink(options: ShrinkOptions) -> int:
 
 
 def _failure(options: ShrinkOptions, replay: "Replay") -> "tuple[Failure, Level | None]":
-    """What fails, and the level to run on in place of the recorded one. Raises Refused."""
+    """The failure to look for, and the level to run on in place of the recorded one. Raises Refused."""
     from sandbox.session.shrink.failures import (
         AnyOf,
         CheckFails,

@@ -149,7 +149,7 @@ def all_validated(definitions: Sequence[Described]) -> tuple[Described, ...]:
 
 
 def subject(definition: Description) -> str:
-    """What messages call a definition: its id in quotes, or what a spring joins."""
+    """The name of a definition in messages: its id in quotes, or what a spring joins."""
     name = getattr(definition, "id", None) or getattr(definition, "name", None)
     return shown(name) if name is not None else "the spring"
 

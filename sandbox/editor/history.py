@@ -37,7 +37,7 @@ class History:
 
     @property
     def subjects(self) -> list[str]:
-        """What each step was made to, in a few words; "" where nothing was selected after it."""
+        """The things that each step changed, in a few words; "" where nothing was selected after it."""
         return [step.subject for step in self._steps]
 
     @property

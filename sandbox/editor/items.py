@@ -99,7 +99,7 @@ def chosen_zones(level: Level, selection: Selection) -> list[ZoneDef]:
 
 
 def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
-    """What the level says of the selected items, by kind and in file order."""
+    """Definitions of the selected items, by kind and in file order."""
     return [
         *chosen_bodies(level, selection),
         *chosen_particles(level, selection),

@@ -55,7 +55,7 @@ def object_lines(level: Level, query: str = "") -> list[ObjectLine]:
 
 
 def name_of(level: Level, item: Item) -> str:
-    """What a list calls an item: its id; a loose spring its name, or its ends."""
+    """The name of an item in lists: its id; of a loose spring its name, or its ends."""
     if item.kind != "spring":
         return str(item.key)
     spring = level.springs[int(item.key)]
@@ -63,7 +63,7 @@ def name_of(level: Level, item: Item) -> str:
 
 
 def called_together(document: Document) -> str:
-    """What is selected, in a few words: a name, that of their group, or how many things; "" = none."""
+    """The selection in a few words: a name, that of the group, or how many things; "" = none."""
     level, selection = document.level, document.selection
     if len(selection) > MOST_NAMED or not selection:
         return f"{len(selection):,} things" if selection else ""

@@ -203,7 +203,7 @@ def items_of_material(level: Level, name: str) -> Selection:
 
 
 def combined(old: Selection, new: Selection, mode: Mode) -> Selection:
-    """What is selected after new items are picked: they alone, too, no longer, or each the other way round."""
+    """The selection after new items are picked: they alone, too, no longer, or each the other way round."""
     match mode:
         case "replace":
             return new

@@ -37,7 +37,7 @@ ROUND = 72
 
 
 class _Joined(NamedTuple):
-    """What bodies expand to, and its arrays one after the other; of a body that has an origin, about that."""
+    """The expansions of bodies with their arrays joined; of a body that has an origin, about that."""
 
     made: list[Expansion[Any]]
     counts: list[int]
@@ -89,7 +89,7 @@ class Collision(NamedTuple):
 
 
 class _Names:
-    """Who has which name: the same in every scene whose items and counts are the same."""
+    """Names of particles and springs: the same in every scene whose items and counts are the same."""
 
     def __init__(self, level: Level, items: tuple[Item, ...], plan: Plan) -> None:
         self.level, self.items, self.plan = level, items, plan

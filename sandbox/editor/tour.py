@@ -17,7 +17,7 @@ ENOUGH_MASS = 10.0
 
 @dataclass(frozen=True)
 class Situation:
-    """What the person has done so far: the level, the tool in hand with its options, and whether it is played."""
+    """The state of the editor in the tour: the level, the tool in hand with its options, and whether it is played."""
 
     scene: Scene
     tool: str = "select"

@@ -125,7 +125,7 @@ class MassLine:
 
 @dataclass(frozen=True)
 class EngineNumbers:
-    """What to type into an engine that takes `steps` steps a tick: frequency [Hz] and damping_ratio of each spring.
+    """The numbers for an engine that makes `steps` steps a tick: frequency [Hz] and damping_ratio of each spring.
 
     masses: k and c by reduced mass, lightest first. rigid: its springs should be rods there. negative: whether the
     engine damps more than the level does even at a damping of 0, which is what it is given.

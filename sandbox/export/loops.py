@@ -47,7 +47,7 @@ class LoopPair:
 
 @dataclass(frozen=True)
 class LoopRow:
-    """What is proven with some substeps of h [s] in a tick: the largest Cs = Cd, and the largest of the level's own
+    """Proven limits with some substeps of h [s] in a tick: the largest Cs = Cd, and the largest of the level's own
     ratio of Cs to Cd."""
 
     substeps: int

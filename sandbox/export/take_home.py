@@ -69,7 +69,7 @@ class TakeHome:
 
 
 def take_home(source: Level | LevelWorld, body: str | None = None) -> TakeHome:
-    """What a body of a level, or of a world as it is now, takes home; None: the first that has springs.
+    """The numbers of a body of a level, or of a world as it is now; None: the first that has springs.
 
     Raises LevelError for a level that is not sound, NoSuchBody where there is no such body.
     """
@@ -107,7 +107,7 @@ def _firmness(body: ChosenBody) -> str:
 
 
 def take_home_text(source: Level | LevelWorld, body: str | None = None, to: str = "all") -> str:
-    """What a body takes home, as text: for a button, from a running world, or from a level; see `take_home`.
+    """The numbers of a body as text: for a button, from a running world, or from a level; see `take_home`.
 
     Raises NoSuchBody, LevelError, and KeyError for a name that is none of TARGETS.
     """

@@ -209,7 +209,7 @@ def wanted_text(check: CheckDef) -> str:
 
 
 def promise_text(check: CheckDef) -> str:
-    """What a check promises, in words for people: "the speed of ball is at most 2 m/s"."""
+    """The promise of a check, in words for people: "the speed of ball is at most 2 m/s"."""
     measured, owner = METRICS[check.metric], check.particle or check.body
     words = PROMISES.get((check.metric, *bounds_of(check)), measured.words)
     return words.format(

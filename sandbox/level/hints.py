@@ -9,7 +9,7 @@ Place = Literal["window", "mouse", "finger"]
 
 
 class Control(NamedTuple):
-    """What a hint names, for a table of hints: what it does, and its word in each place; None: it is not there.
+    """A control that hints name: what it does, and its word in each place; None: it is not there.
 
     action: its name in the window's table of shortcuts, whose key takes the place of KEY; "": it has none there.
     element: the id of what a page has for it; "": a page has nothing for it.

@@ -196,7 +196,7 @@ def _number(value: float) -> str:
 
 
 def _without(field: Field) -> str:
-    """What holds when a file leaves a field out: what null means, a value, or words for an empty one."""
+    """Words for a field that a file leaves out: what null means, the default, or words for an empty one."""
     value = field["default"]
     if value is None:
         return str(field["empty"])

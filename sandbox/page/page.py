@@ -28,7 +28,7 @@ _PLACE = re.compile("@([A-Z]+)@")
 
 
 def toy_content(level: Mapping[str, Any], image: Image) -> bytes:
-    """What a page opens: the length of JSON, what scripts read of a level as JSON, and the image of its world."""
+    """The data of a page: the length of JSON, the level for its script as JSON, and the image of its world."""
     data = json.dumps(level, separators=(",", ":"), allow_nan=False).encode()
     return struct.pack("<I", len(data)) + data + image.content
 

@@ -106,7 +106,7 @@ LEAST_COPY = 64
 
 
 class ArrayPlace(NamedTuple):
-    """Where an array of a block is: the first of its words, its dtype as numpy writes it, and its dimensions."""
+    """The place of an array in a block: the first of its words, its dtype as numpy writes it, and its dimensions."""
 
     word: int
     dtype: str

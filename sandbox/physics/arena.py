@@ -129,7 +129,7 @@ def lay_out(entry: Callable[..., Any], pointer: Any, arena: Arena, *arguments: A
 
 
 def answer_of(entry: Callable[..., Any], words: int, *arguments: Any) -> tuple[Any, Arena]:
-    """What a kernel entry(arena, ...) gives once it finds room, and its arena, which has so many words at first."""
+    """The answer of a kernel entry(arena, ...) once it finds room, and its arena, which has so many words at first."""
     arena = np.zeros(words, np.int64)
     answer = entry(arena, *arguments)
     while arena[0] > len(arena):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class ArrayKind:
-    """What an array of a named tuple holds. It stands beside numpy's alias, whose inside differs between versions."""
+    """The kind of an array in a named tuple. It stands beside numpy's alias, whose inside differs between versions."""
 
     dtype: type[np.generic]
     dimensions: int = 1

@@ -33,7 +33,7 @@ class Zones(NamedTuple):
 
 
 class Terms(NamedTuple):
-    """What rules ask, each below what asks it in turn; those of TOUCHES come first."""
+    """The questions of rules, each below the one that asks it; those of TOUCHES come first."""
 
     kind: Slots
     first: Slots  # first, last: the slots of what it is about; of ALL, ANY and NOT the members

@@ -162,7 +162,7 @@ class Left:
     settings: WorldSettings
 
     def written(self, world: World) -> list[str]:
-        """The arrays, by their names in files, and `settings`, that are other in a world now."""
+        """The arrays, by their names in files, and `settings`, that have changed in a world since."""
         arrays, kept, found = vars(world), self.kept, []
         for name, stored, column in _COLUMNS:
             if arrays[name].tobytes() == kept.get(stored, _NOTHING)[0]:

@@ -89,7 +89,7 @@ def drag_factor_of(drag: float, tick_rate: int, parts: int) -> float:
 
 @scalar_kernel
 def kept_by(solver: int, is_auto: int) -> int:
-    """What substeps leave as it is in a solver; is_auto: ticks choose how many there are."""
+    """Which columns of springs substeps leave as they are, MOTION or the like; is_auto: ticks choose the count."""
     if solver != DIRECT:
         return MOTION
     return ALL_CONSTANT if is_auto != 0 else ALL_BUT_FIRM

@@ -49,7 +49,7 @@ class RuleActions:
 
 
 def softening_of(action: ActionDef, level: Level, world: LevelWorld) -> dict[str, Any]:
-    """What `soften` is given for an action: all of a body sags as where its definition says it, under the gravity of
+    """The arguments of `soften` for an action: all of a body sags as its definition says, under the gravity of
     the level.
     """
     body = next(place for place, form in enumerate(world.forms) if form.name == action.body)

@@ -27,7 +27,7 @@ SOLUTION_SUFFIX = ".solution.replay.gz"
 
 @dataclass(frozen=True)
 class GoalResult:
-    """What came of a level's goal: a line that says it, and whether it passed; without a solution it does."""
+    """The result of a level's goal: its line, and whether it passed; without a solution it does."""
 
     passed: bool
     text: str
@@ -139,7 +139,7 @@ def _check_golden(name: str, start: float) -> LevelReport:
 
 
 def _timed(level: Level) -> list[tuple[CheckResult, float]]:
-    """What came of the checks, in the order of the file, and how long each took [s] after the one known before it."""
+    """The results of the checks, in the order of the file, and how long each took [s] after the one known before it."""
     found: dict[int, tuple[CheckResult, float]] = {}
     before = time.perf_counter()
     for known in checks_as_they_end(level):

@@ -74,7 +74,7 @@ class Event:
 
 @dataclass
 class Meeting:
-    """How long two things were together, from the first time to the last; times: how often that began.
+    """The time of two things together, from the first tick to the last; times: how often they came together.
 
     is_over: whether they are apart since `last`.
     """
@@ -184,7 +184,7 @@ def _in_zone(zone: ZoneDef, position: Floats) -> NDArray[np.bool_]:
 
 
 def events_of(run: Session, watch: TouchWatch | None = None) -> list[Event]:
-    """What happened in a run until its present tick, one by one, in the order of time; what was undone never happened.
+    """The events of a run until its present tick, one by one, in the order of time, without undone ones.
 
     watch: one that watched all its ticks; None: without who touched whom and who was in which zone.
     """
@@ -229,7 +229,7 @@ def shortened(events_of: Sequence[Event], most: int = MOST_LINES) -> tuple[list[
 
 
 def tick_events_of(run: Session, last: int) -> Iterator[Event]:
-    """What a run itself keeps of its ticks until a tick, which may lie ahead of the present one, in order."""
+    """The events that a run itself keeps until a tick, which may lie ahead of the present one, in order."""
     names, known = run.world.spring_names, outcome(run.level, run.world)
     end = None if known is None else known.tick
     for tick, kept in sorted(run.history.tick_events.items()):
@@ -309,7 +309,7 @@ def _times(met: Meeting) -> str:
 
 
 def user_actions(script: Iterable[ScriptLine]) -> Iterator[Event]:
-    """What was done, in order. Alike commands of one gesture, such as a slider that is dragged, are one."""
+    """The user's actions, in order. Alike commands of one gesture, such as a slider that is dragged, are one."""
     held: dict[Any, str] = {}
     going: dict[tuple[int, str], tuple[int, int, Record]] = {}
     for line in script:

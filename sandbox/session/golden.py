@@ -156,7 +156,7 @@ def _point(world: World, slots: list[int], masses: list[float]) -> Point:
 
 
 def differences(golden: GoldenFile, measured: GoldenFile) -> list[str]:
-    """What is not within its tolerance, or not recorded yet; a line each."""
+    """The values that are beyond their tolerance, or not recorded yet; a line each."""
     return [*_moved(golden, measured), *_changed(golden, measured)]
 
 

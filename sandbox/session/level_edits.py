@@ -86,7 +86,7 @@ def edit_lines(before: Level, after: Level, name: str = "level") -> tuple[str, .
 
 
 def _at(data: Any, path: Sequence[str | int]) -> Any:
-    """What a place of a level's data holds, ABSENT where there is no such place."""
+    """The value at a place of a level's data, ABSENT where there is no such place."""
     for part in path:
         inside = _named(data) if isinstance(data, list) else data
         if not isinstance(inside, dict) or part not in inside:

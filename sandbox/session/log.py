@@ -23,7 +23,7 @@ MOST_NAMED = 3
 
 @dataclass(frozen=True)
 class TickEvents:
-    """What happened in a tick that the state after it does not tell.
+    """Events of a tick that the state after it does not tell.
 
     broken: slots of springs; rules: of the level, by number; counters: their values, before what those rules do;
     frozen: names of what the quarantine froze.
@@ -58,7 +58,7 @@ class LogEntry:
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """How a run went on from a tick (0..) before something else was done there; see Session.return_to.
+    """A run as it went on from a tick (0..) before something else was done there; see Session.return_to.
 
     history: its commands from the beginning; last_tick: how far it went; tick_events: what happened in its ticks.
     """

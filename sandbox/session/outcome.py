@@ -13,7 +13,7 @@ MOST_STARS = 3
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended for its player: won with stars, 1 to 3, or lost with none; at the end of a tick, by a rule."""
+    """The end of a run for its player: won with stars, 1 to 3, or lost with none; at the end of a tick, by a rule."""
 
     is_won: bool
     text: str

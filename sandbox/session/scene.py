@@ -52,7 +52,7 @@ class Standing:
 
 @dataclass(frozen=True, eq=False)
 class RunScene:
-    """How a run stands. script: the commands that count; standings: some states, of which the last is the present one.
+    """A run as it stands. script: the commands that count; standings: some states, the last is the present one.
 
     tick_events: what happened in which tick, as far as it is known.
     """
@@ -136,7 +136,7 @@ class SceneTaker:
 
 
 def actions_in_words(script: Sequence[ScriptLine]) -> str:
-    """What the commands of a script did, in a few words: "3 things added, 1 cut"."""
+    """The commands of a script in a few words: "3 things added, 1 cut"."""
     gestures: dict[int, set[str]] = {}
     for line in script:
         gestures.setdefault(line.gesture, set()).add(str(line.record.get("type")))
@@ -160,7 +160,7 @@ class _SceneFirstLine(FirstLine):
 
 @dataclass(frozen=True)
 class About:
-    """What a scene's first line says: the level's name, when it was kept, what was done, the file of the level."""
+    """The facts in a scene's first line: the level's name, when it was kept, the actions, the file of the level."""
 
     path: Path
     name: str

@@ -403,7 +403,7 @@ class Session:
             recorder.abandon()
 
     def _record(self, write: Callable[..., Recorded], *what: Any) -> Recorded | None:
-        """What writing gives; None where it fails, which ends the recording."""
+        """The result of writing to the recording; None where it fails, which ends the recording."""
         try:
             return write(*what)
         except OSError as error:
@@ -445,7 +445,7 @@ class Session:
         return all_or_nothing(self._checkpoint(changes_history))
 
     def _checkpoint(self, with_history: bool) -> Callable[[], None]:
-        """What brings the present state back, and the history as it is now."""
+        """A function that brings back the present state, and with_history the history as it is now."""
         state = take(self.world)
         history = self.history.copy() if with_history else None
         effects = [(entry, entry.in_effect, entry.implied) for entry in history.log] if history else []

@@ -31,7 +31,7 @@ class NotReached(AssertionError):
 
 
 class SandboxSession(Protocol):
-    """What the fixture `sandbox_session` is, to annotate tests: it begins a run of a level."""
+    """The type of the fixture `sandbox_session`, to annotate tests: it begins a run of a level."""
 
     def __call__(self, level: LevelLike) -> "Driver": ...
 

@@ -74,7 +74,7 @@ class LevelTests(pytest.File):
             yield GoalItem.from_parent(self, name="goal")
 
     def result(self, number: int) -> "CheckResult":
-        """What came of a check; all of the file are measured in the same run, as far as it is needed. Raises Failed."""
+        """The result of a check; all of the file are measured in the same run, as far as needed. Raises Failed."""
         if self._running is None:
             from sandbox.session.check_run import checks_as_they_end
             from sandbox.testing.replaying import with_solver
@@ -150,7 +150,7 @@ class GoldenTest(pytest.File):
 
 
 class GoldenItem(ToldItem):
-    """What a golden file holds comes out again, within its tolerances."""
+    """The test that a golden file's values come out again, within its tolerances."""
 
     mark = "golden"
 

@@ -61,7 +61,7 @@ def _raised(a: FloatRows, b: FloatRows, by: float) -> tuple[FloatRows, FloatRows
 
 
 class _Obstacles:
-    """What a part with sides from a on may hit within the reach of its lift."""
+    """The obstacles that a part with sides from a on may hit within the reach of its lift."""
 
     def __init__(self, snapshot: Snapshot, a: FloatRows, height: float, is_closed: bool) -> None:
         self._is_closed = is_closed

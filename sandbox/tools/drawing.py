@@ -35,7 +35,7 @@ NO_ROOM = "There is no room for it here. Draw it where it is free."
 
 @dataclass(frozen=True)
 class PartMaterial:
-    """What a drawn body is made of: its name; Cs and Cd; mass of a square metre [kg/m^2]; and what a file says more."""
+    """The material of a drawn body: its name; Cs and Cd; mass of a square metre [kg/m^2]; a file's further fields."""
 
     name: str
     stiffness: float

@@ -29,14 +29,14 @@ SAME = "Both ends are at the same place of one thing. Drag to another."
 
 
 class End(NamedTuple):
-    """Where something is tied: a place [m], and the particle there; None: a pin in the air."""
+    """The place where something is tied [m], and the particle there; None: a pin in the air."""
 
     place: Point
     particle: int | None
 
 
 def end_at(event: PointerEvent, snapshot: Snapshot) -> End:
-    """What a press takes: a particle there, or of the body around the place, else a pin in the air."""
+    """The end at a press: a particle there, or of the body around the place, else a pin in the air."""
     particle = particle_at(snapshot, event.position, event.pick_radius)
     if particle is None:
         return End(event.position, None)
@@ -150,7 +150,7 @@ class PullTool(PlacedTool):
         self._start = End(tuple(snapshot.position[particle].tolist()), particle) if is_there else None
 
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
-        """What a press would take, also while it is pulled: where it ends."""
+        """The end that a press would take, also while it is pulled: where it ends."""
         return end_at(PointerEvent("move", place, within), snapshot).particle
 
     @property

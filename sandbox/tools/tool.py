@@ -48,7 +48,7 @@ class Submission(NamedTuple):
 
 @dataclass(frozen=True)
 class Response:
-    """What a tool makes of an event: commands in order, and a line for the person where something cannot be done."""
+    """A tool's answer to an event: commands in order, and a line for the person where something cannot be done."""
 
     submissions: tuple[Submission, ...] = ()
     message: str | None = None
@@ -137,7 +137,7 @@ class Tool(ABC):
 
     @property
     def hint(self) -> str:
-        """What is said beside the pointer, in a sentence: why the last press did nothing."""
+        """A sentence beside the pointer: why the last press did nothing."""
         return self._refusal
 
     @property

@@ -48,7 +48,7 @@ def controls_of(keys: Iterable[str]) -> dict[str, str]:
 
 
 class Gamepads:
-    """Opens gamepads as they come; a control is down while any stick or button that is one holds it down."""
+    """Opens gamepads as they come; a control is down while any stick or button of any gamepad holds it down."""
 
     def __init__(self) -> None:
         self._open: dict[int, Any] = {}

@@ -165,7 +165,7 @@ def _stored(comparison: Comparison, tick: int | None, ring: int | None) -> list[
 
 
 def _pictures(comparison: Comparison) -> Iterator[pygame.Surface]:
-    """Both runs, or the actual one alone, from before that tick until after it."""
+    """Pictures of both runs, or of the actual one alone, around the tick that tells most."""
     rate = comparison.actual.world.settings.tick_rate
     step, tick = max(1, round(rate / FPS)), comparison.telling_tick
     first, last = max(0, tick - round(AROUND * rate)), min(comparison.replay.ticks, tick + round(AROUND * rate))

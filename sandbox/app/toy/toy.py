@@ -38,7 +38,7 @@ REACH = 16.0
 
 
 class ToyChoices:
-    """What is chosen for the toy: its sound is its own, and off at first."""
+    """Settings of the toy: its sound is its own, and off at first."""
 
     def __init__(self, chosen: Chosen, sound: Any) -> None:
         self._chosen = chosen
@@ -356,7 +356,7 @@ class FrameMotion:
         return place != before
 
     def forget(self, place: tuple[int, int]) -> None:
-        """The window is there, without having been moved: nobody felt it."""
+        """Forget the window's motion: it appears here, nobody has moved it."""
         self._place = place
 
     def nudge(self, dx: float, dy: float) -> None:
@@ -396,7 +396,7 @@ FAST = 40.0
 
 
 class SleepTimer:
-    """When a toy falls asleep: is_due, once nothing moves and nobody acts; moves_fast: something is fast enough for every frame to count."""
+    """When a toy falls asleep: is_due; moves_fast: something is fast enough for every frame to count."""
 
     def __init__(self) -> None:
         self.moves_fast = True
@@ -413,7 +413,7 @@ class SleepTimer:
         self._idle = 0.0
 
     def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool, rested: float) -> None:
-        """Take in the state after a frame of `seconds`, a metre being `zoom` pixels; all has been at rest for `rested`."""
+        """Take in the state after `seconds`, a metre being `zoom` pixels; all has been at rest for `rested` [s]."""
         self._hovered, self._rested = hovered, rested
         self._idle += seconds
         free = shown_particles(now) & (now.inverse_mass > 0.0)

@@ -334,7 +334,7 @@ class Field(Widget):
         return surface
 
     def _paint_edited(self, surface: pygame.Surface) -> None:
-        """The text as it is edited, moved so far that the caret is seen."""
+        """Draw the text under edit, shifted so far that the caret is seen."""
         (wide, high), thick = surface.get_size(), max(self.ui.px(1), 1)
         caret, text = self._line.caret, self.typed
         shown = text[:caret] + self.composed + text[caret:]

@@ -61,7 +61,7 @@ class Form(PropertyWidgets):
         self.area.set_height(self._ui.px(self.end + self._below))
 
     def _add_heading(self, section: Section, is_first: bool) -> None:
-        """The name of what is shown, or a heading that folds what is below it."""
+        """Add the title of what is shown, or a heading that folds what is below it."""
         ui = self._ui
         if not is_first:
             fold, place = partial(self._fold, section), self._rect(0, self._inside, HEADING - 4)

@@ -32,7 +32,7 @@ Vector = tuple[float, float]
 
 @dataclass(frozen=True)
 class SliderState:
-    """What a slider shows: a value, its limit (None: none is proven), the level's own value (None: there is none).
+    """The values of a slider: the present one, its limit (None: none is proven), the level's own (None: there is none).
 
     is_mixed: the springs differ; enabled: there is anything to set.
     """

@@ -36,7 +36,7 @@ class BoxLook(NamedTuple):
 
 
 class ButtonStyle(NamedTuple):
-    """How a button looks in each state; size of its letters and radius of its corners [layout units]."""
+    """The look of a button in each state; size of its letters and radius of its corners [layout units]."""
 
     looks: dict[State, BoxLook]
     size: float = 13.0
@@ -44,7 +44,7 @@ class ButtonStyle(NamedTuple):
 
 
 class LabelStyle(NamedTuple):
-    """How a line of text looks; size [layout units]; side: 0 left, 0.5 middle, 1 right."""
+    """The look of a line of text; size [layout units]; side: 0 left, 0.5 middle, 1 right."""
 
     text: Colour
     size: float = 13.0

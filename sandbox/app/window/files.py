@@ -48,7 +48,7 @@ MOST_LEVELS = 300
 
 
 class FileActions:
-    """What the app does with files; faults are shown as lines, and the app goes on with what it had."""
+    """Actions on files; faults are shown as lines, and the app goes on with what it had."""
 
     def __init__(self, app: Application) -> None:
         self.app = app
@@ -317,7 +317,7 @@ class FileActions:
 
 
 def _head_of(path: Path) -> dict[str, Any]:
-    """What a file says whose level is not checked yet; nothing where it is none."""
+    """The data of a file whose level is not checked yet; empty where it holds none."""
     try:
         data = json.loads(read_bytes(path))
     except (LevelError, ValueError, RecursionError):

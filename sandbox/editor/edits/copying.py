@@ -37,7 +37,7 @@ from sandbox.level.reading.parse import parse_level
 
 
 def copy_text(document: Document) -> str:
-    """What is selected as the text of a level. Raises EditError where that is nothing, or springs alone."""
+    """The selection as the text of a level. Raises EditError where it is empty, or springs alone."""
     return level_text(fragment(document))
 
 
@@ -83,7 +83,7 @@ def array_circle(document: Document, count: int, centre: Point, angle: float) ->
 
 
 def fragment(document: Document) -> Level:
-    """What is selected as a level of its own. Raises EditError where that is nothing, or springs alone."""
+    """The selection as a level of its own. Raises EditError where it is empty, or springs alone."""
     level, selection = document.level, document.selection
     bodies, particles = chosen_bodies(level, selection), chosen_particles(level, selection)
     terrain, zones = chosen_terrain(level, selection), chosen_zones(level, selection)
@@ -213,7 +213,7 @@ def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, 
 
 
 def _material(copy: Level, name: str, materials: dict[str, Material]) -> str:
-    """What the material of a copy is called among `materials`, which gets it where it has none of its values."""
+    """The name of a copy's material among `materials`, which gets it where it has none of its values."""
     built_in = {DEFAULT_MATERIAL: NissenMaterial()}
     own = copy.materials.get(name, built_in.get(name))
     assert own is not None
@@ -249,7 +249,7 @@ def place_part(document: Document, part: Level, at: Point, mirrored: bool = Fals
 
 
 def part_of(document: Document, name: str) -> Level:
-    """What is selected as a part of that name. Raises EditError where that is nothing, or the name none."""
+    """The selection as a part of that name. Raises EditError where it is empty, or the name none."""
     name = name.strip()
     if not 0 < len(name) <= TEXT_LIMIT:
         raise EditError(f"a name has 1 to {TEXT_LIMIT} characters")

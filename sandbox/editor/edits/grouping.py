@@ -108,7 +108,7 @@ def shift(document: Document, later: bool) -> Document:
 
 
 def _moved_beside(document: Document, other: Item, after: bool) -> Document:
-    """What is selected of the kind of another item, beside that in the file, before or after it, in its own order."""
+    """The selected items of the kind of another, put before or after that one in the file, in their own order."""
     level, selection = document.level, document.selection
     items = [item for item in items_of(level) if item.kind == other.kind]
     moved = [index for index, item in enumerate(items) if item in selection]

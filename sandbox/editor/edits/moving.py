@@ -299,7 +299,7 @@ def mapped_body(body: AnyBody, motion: Motion) -> tuple[AnyBody, Points]:
 
 
 def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
-    """What is lined up as one, by the ids in it: a group, or an item in none; lowest and highest corners [m] (k, 2)."""
+    """The boxes that are lined up: of groups, and of items in none; ids, lowest and highest corners [m] (k, 2)."""
     placed = (chosen_bodies, chosen_particles, chosen_terrain, chosen_zones)
     chosen: list[Any] = [part for found in placed for part in found(document.level, document.selection)]
     numbers: dict[tuple[bool, str], int] = {}

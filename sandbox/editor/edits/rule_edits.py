@@ -139,7 +139,7 @@ def templates(document: Document) -> list[Template]:
 
 
 def why_not(document: Document) -> str:
-    """What a level has to get before every template can be had; empty where it has all."""
+    """A line about what the level lacks for the templates; empty where it has all."""
     level = document.level
     if not (level.bodies or level.particles):
         return "Draw something that moves first, such as a particle with a radius: a ball."

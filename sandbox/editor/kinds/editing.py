@@ -52,7 +52,7 @@ class Motion:
         return tuple(self.point(point) for point in points)
 
     def turned(self, angle: float) -> float:
-        """What a direction [rad] becomes, between half a turn back and half a turn on; of a mirror, its image."""
+        """The image of a direction [rad], between half a turn back and half a turn on."""
         if self.is_mirror:
             angle = math.pi - angle if self.sx < 0.0 else -angle
         angle += self.angle
@@ -89,7 +89,7 @@ class BodyEditing(Generic[Body]):
 
     @property
     def noun(self) -> str:
-        """What messages call a body of the kind that cannot be stretched."""
+        """The name in messages of a body that cannot be stretched."""
         return self.body.type
 
     def can_stretch(self) -> bool:

@@ -154,7 +154,7 @@ class JellyEditing(BodyEditing[JellyDef]):
 
     @property
     def noun(self) -> str:
-        """What messages call it where it cannot be stretched; square ones can be."""
+        """The name in messages of a jelly that cannot be stretched; square ones can be."""
         return "jelly that is round or turned"
 
     def can_stretch(self) -> bool:

@@ -223,7 +223,7 @@ def _let_rest(
 
 
 def _turned(level: Level) -> Floats:
-    """What turns places (n, 2) into how far they are along the way that things fall, and across it."""
+    """Matrix (2, 2) from places to their distances along the way that things fall, and across it."""
     x, y = np.array(level.settings.gravity) / np.hypot(*level.settings.gravity)
     return np.array([(x, -y), (y, x)])
 

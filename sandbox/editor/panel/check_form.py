@@ -28,7 +28,7 @@ _BOUNDS = {"at_least": "at_most", "at_most": "at_least"}
 
 
 def check_properties(document: Document, index: int) -> tuple[Section, ...]:
-    """What can be changed of a check of the level, by its index; () where there is none."""
+    """Properties of a check of the level, by its index; () where there is none."""
     checks = document.level.checks
     if not 0 <= index < len(checks):
         return ()

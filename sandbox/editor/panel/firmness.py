@@ -117,7 +117,7 @@ def _by_ratio(ratio: float, reach: FirmnessRange, present: FirmnessDef | None) -
 
 
 def _reached(level: Level, body: BodyDef, asked: Asked) -> tuple[Firmness | None, Firmness | None]:
-    """What is asked of a body, and what it is given: the nearest in reach. Raises EditError where nothing is."""
+    """The firmness that is asked of a body, and the nearest in reach. Raises EditError where nothing is."""
     reach = _reach(level, body)
     if reach.lowest_mode == 0.0:
         raise EditError(f"the form of {shown(body.id)} is not stiff without pins, so it has no firmness")

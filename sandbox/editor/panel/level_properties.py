@@ -22,7 +22,7 @@ _LEVEL_FIELDS = ("name", "description", "goal", "author", "licence", "tags", "vi
 
 
 def level_properties(document: Document) -> tuple[Section, ...]:
-    """What can be changed of the level itself and of how its time passes."""
+    """Properties of the level itself and of its settings of time."""
     level = document.level
     about = fields_of(Level)
     of_level = [Property(name, about[name], getattr(level, name), partial(_set_level, name)) for name in _LEVEL_FIELDS]

@@ -51,7 +51,7 @@ _RARE = ("More",)
 
 
 def properties(document: Document) -> tuple[Section, ...]:
-    """What can be changed of the selected items; () where nothing is selected.
+    """Properties of the selected items; () where nothing is selected.
 
     Fields of their forms are those that all of them have. What some have, such as a mass, is there for those.
     """

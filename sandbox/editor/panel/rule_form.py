@@ -45,7 +45,7 @@ _Data = dict[str, Any]
 
 
 def rule_properties(document: Document, index: int) -> tuple[Section, ...]:
-    """What can be changed of a rule of the level, by its index, of the counters, and of the level's goal."""
+    """Properties of a rule of the level, by its index, of the counters, and of the level's goal."""
     level = document.level
     sections = []
     if 0 <= index < len(level.rules):

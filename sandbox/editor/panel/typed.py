@@ -150,7 +150,7 @@ def read_words(title: str, text: str) -> list[str]:
 
 
 def touched_text(collides: bool | Sequence[str]) -> str:
-    """What something touches, in words: everything, nothing, or groups."""
+    """The things that an object touches, in words: everything, nothing, or groups."""
     if isinstance(collides, bool):
         return EVERYTHING if collides else NOTHING
     return list_text(collides) if collides else NOTHING

@@ -126,7 +126,7 @@ class Orphan:
             raise StorageError(error.faults[0]) from None
 
     def salvaged(self) -> tuple[Level | None, list[str]]:
-        """What is valid of a damaged one, and the lines of what is left out. Raises StorageError."""
+        """The valid part of a damaged autosave, and the lines of what is left out. Raises StorageError."""
         return salvage(_halves(self.path)[1], os.fspath(self.path))
 
     def dismiss(self) -> None:

@@ -27,7 +27,7 @@ SLICE_TICKS = 4
 
 @dataclass(frozen=True)
 class Result:
-    """How well a level was won: with 1 to 3 stars, after so many ticks, of which a second has `rate`."""
+    """A win of a level: with 1 to 3 stars, after so many ticks, of which a second has `rate`."""
 
     stars: int
     ticks: int

@@ -34,7 +34,7 @@ _FIRST = ("car", "crane", "walker", "windmill", "tower")
 
 
 class StorageError(Exception):
-    """What could not be stored or opened, in one line for the person."""
+    """Something that could not be stored or opened, in one line for the person."""
 
 
 class LevelInUse(StorageError):

@@ -27,7 +27,7 @@ def data_folder() -> Path:
 
 
 def preference(name: str, folder: Path | None = None) -> Any:
-    """What is remembered under a name; None where nothing is. folder: of the person's data."""
+    """The value remembered under a name; None where there is none. folder: of the person's data."""
     return preferences(folder).get(name)
 
 
@@ -78,7 +78,7 @@ def preferences_file(folder: Path | None = None) -> Path:
 
 
 def _read(file: Path) -> dict[str, Any]:
-    """What a file holds, nothing where there is none. Raises OSError, and ValueError for what are no preferences."""
+    """The values in a file, none where there is no file. Raises OSError, and ValueError for what are no preferences."""
     try:
         read = json.loads(file.read_bytes())
     except FileNotFoundError:

@@ -52,7 +52,7 @@ class BodyDrawing(Drawing[AnyBodyOptions], Generic[AnyBodyOptions]):
     kind: str
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """What the points and options say of the body; its material and particle mass apart."""
+        """The body's fields from points and options; its material and particle mass apart."""
         raise NotImplementedError
 
     def placed(self, document: Document, points: list[Snap]) -> Document:

@@ -90,7 +90,7 @@ AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
 def described(options: Options) -> dict[str, FieldInfo]:
-    """What a person is told of each option that is set in a row of fields, by its name, in order."""
+    """The description of each option that is set in a row of fields, by its name, in order."""
     return {each.name: each.metadata["about"] for each in fields(options) if "about" in each.metadata}
 
 

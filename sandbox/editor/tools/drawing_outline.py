@@ -33,7 +33,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
         return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:
-        """Never: corners have no particles of their own."""
+        """False: corners have no particles of their own."""
         return False
 
     def down(self, snap: Snap) -> None:
@@ -50,7 +50,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
             self.close()
 
     def move(self, snap: Snap) -> None:
-        """A stroke that begins the outline draws it; later ones move the corner that is pressed."""
+        """Draw the outline by a stroke that begins it; later ones move the corner that is pressed."""
         self.pointer = snap
         if not self._pressed:
             return
@@ -93,7 +93,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
         return self._complete
 
     def fault_of_outline(self) -> str:
-        """What is wrong with the outline so far, in a few words; empty if nothing is."""
+        """The fault of the outline so far, in a few words; empty if there is none."""
         return self.fault([point.point for point in self.points]).partition(";")[0]
 
     def close_round(self) -> bool:
@@ -101,7 +101,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
         return self.close()
 
     def fault(self, corners: list[Point]) -> str:
-        """What is wrong with an outline, for the person; empty if nothing is."""
+        """The fault of an outline, for the person; empty if there is none."""
         if len(corners) < 3:
             return "an outline needs three corners or more"
         if not is_simple(corners):

@@ -52,7 +52,7 @@ class Drawing(Generic[AnyOptions]):
 
     @property
     def step(self) -> str:
-        """What a step of the history is called that it makes; empty = by the tool's name."""
+        """Name of the tool's step in the history; empty = by the tool's name."""
         return ""
 
     @property
@@ -87,7 +87,7 @@ class Drawing(Generic[AnyOptions]):
         return self.sizes(points) if self.points and self._sound(points) else ""
 
     def ghost(self, document: Document) -> Document | None:
-        """What the gesture would add if it ended at the pointer, selected; None where it cannot end there.
+        """The document as if the gesture ended at the pointer, the new things selected; None where it cannot end there.
 
         It is alone in its document, but for stand-ins of the particles that it joins: large levels need no longer.
         """
@@ -196,7 +196,7 @@ class Drawing(Generic[AnyOptions]):
     # ---- between them
 
     def fault_of_outline(self) -> str:
-        """What is wrong with the outline so far, in a few words; empty if nothing is."""
+        """The fault of the outline so far, in a few words; empty if there is none."""
         return ""
 
     def _so_far(self) -> list[Snap]:

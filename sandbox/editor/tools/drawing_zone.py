@@ -51,7 +51,7 @@ class ZoneDrawing(OutlineDrawing[ZoneOptions]):
         return super().hint
 
     def move(self, snap: Snap) -> None:
-        """A drag that begins the zone is a box or a circle; a later one moves the corner that is pressed."""
+        """Draw a box or a circle by a drag that begins the zone; a later one moves the corner that is pressed."""
         self.pointer = snap
         if not self._pressed:
             return

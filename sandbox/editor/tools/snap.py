@@ -30,7 +30,7 @@ SHOWN_DECIMALS = 4
 
 @dataclass(frozen=True)
 class Snap:
-    """Where a pointer is taken to be [m], what drew it there, whose particle that is, and a word for the person.
+    """A snapped place [m], the thing it snapped to, whose particle that is, and a word for the person.
 
     pointer [m]: where it really is; None = there.
     """

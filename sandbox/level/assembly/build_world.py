@@ -83,7 +83,7 @@ def build_world(level: Level) -> LevelWorld:
 
 
 def _part_cut_bodies(world: World, level: Level, plan: Plan) -> None:
-    """What falls into pieces without its cut springs is several bodies, as if it had been cut in a run."""
+    """Make several bodies of one that falls into pieces without its cut springs, as if it had been cut in a run."""
     first, springs = 0, []
     for body, made in zip(level.bodies, plan.bodies, strict=True):
         springs += [first] if body.cut and len(made.pairs) else []

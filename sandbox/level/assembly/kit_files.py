@@ -318,7 +318,7 @@ def _rows(columns: Mapping[str, Any], name: str, usual: Any) -> list[Any]:
 
 
 def _row(columns: Mapping[str, Any], name: str, slot: int | None, usual: Any) -> Any:
-    """What a row has in a column, which is a list, one value for all, or nothing."""
+    """The value of a row in a column, which is a list, one value for all, or nothing."""
     value = columns.get(name)
     if isinstance(value, list) and slot is not None:
         value = value[slot]

@@ -105,7 +105,7 @@ def _packed(world: LevelWorld, columns: Mapping[str, Mapping[str, Any]], bodies:
 def _world_names(
     world: World, names: KitNames, count: int
 ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-    """What the world calls the bodies of a kit, its particles, springs and driven parts."""
+    """The world's names of the bodies of a kit, its particles, springs and driven parts."""
     first = sum(len(joined.names) for joined in world.joined) + 1
     bodies = tuple(f"+{number}" for number in range(first, first + count))
     free = world.spring_naming.unused("+:", sum(body < 0 for body, _ in names.springs))

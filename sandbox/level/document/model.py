@@ -420,7 +420,7 @@ class Level(Description):
 
 
 def version_fault(version: int) -> str:
-    """What is wrong with a level of another version than the present one."""
+    """The fault of a level of another version than the present one."""
     known = f"this program reads version {VERSION} of the format"
     return f"made by a newer program; {known}, update it" if version > VERSION else known
 

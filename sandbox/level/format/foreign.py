@@ -30,7 +30,7 @@ _HEAD = 4096  # [bytes]
 
 
 def foreign_fault(kind: str) -> str:
-    """What is said of a file of another program in place of a level, and what can be done."""
+    """The message about a file of another program in place of a level, and what can be done."""
     remedy = "; `sandbox bring` makes a level of it, and so does dropping it on the window" if kind in BROUGHT else ""
     return f"is {kind}, not a Spring Sandbox level{remedy}"
 

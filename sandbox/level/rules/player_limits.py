@@ -17,7 +17,7 @@ MOST = 1000
 
 
 class Meaning(NamedTuple):
-    """What a word stands for: types of commands; in words; those of them that a budget counts, and what it counts."""
+    """The meaning of a word: types of commands; in words; those of them that a budget counts, and what it counts."""
 
     commands: tuple[str, ...]
     words: str
@@ -110,7 +110,7 @@ def thing_of(name: str) -> str:
 
 
 def words_of(kind: str) -> tuple[str, str]:
-    """What a type of commands does to things, and what a budget of it counts, in words."""
+    """The effect of a type of commands, and what a budget of it counts, in words."""
     for meaning in MEANINGS.values():
         if kind in meaning.commands:
             return meaning.words, meaning.remaining_words.lower()

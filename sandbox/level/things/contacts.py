@@ -43,7 +43,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class ContactEvents:
-    """What changed since the last update: contacts that began, the hardest point of each, and pairs that parted."""
+    """Changes since the last update: contacts that began, the hardest point of each, and pairs that parted."""
 
     begin: tuple[Contact, ...] = ()
     end: tuple[Pair, ...] = ()
@@ -82,7 +82,7 @@ class ContactListener:
         return max(tick - self._patience - 1, 0)
 
     def update(self, world: LevelWorld) -> ContactEvents:
-        """What changed since the last call. In a world that went back in time all contacts are over, and begin anew."""
+        """The changes since the last call. In a world that went back in time all contacts are over, and begin anew."""
         tick, now = world.tick, touching_pairs(world)
         ended = list(self._last) if tick < self._tick else []
         if ended:

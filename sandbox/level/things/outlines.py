@@ -62,7 +62,7 @@ class _Rim:
 
 @dataclass(frozen=True, eq=False)
 class _Rims:
-    """What stays while nothing joins, leaves or breaks; colours: by thing."""
+    """Rims that stay while nothing joins, leaves or breaks; colours: by thing."""
 
     bodies: list[_Rim]
     terrain: list[ThingOutline]

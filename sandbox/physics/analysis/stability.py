@@ -105,7 +105,7 @@ def _owner_name(world: World, slot: int) -> str:
 
 
 def _energy_bound(world: World) -> str:
-    """What the test of a step's energy proves, and of which kind the springs are."""
+    """The sentence about what the test of a step's energy proves for these springs."""
     stiffness, damping = world.stiffness, world.damping
     springs = _working(world) & (world.law != LAW_HOOKE) & (stiffness > damping)
     constraints = (constraint_count(world) > 0.0) & (world.constraint_stiffness > world.constraint_damping)
@@ -141,7 +141,7 @@ def _largest(inside: Callable[[float], bool]) -> float:
 
 @dataclass(frozen=True)
 class CoefficientLimits:
-    """How far each slider may go, per tick, with all else as it is; None = no limit can be proven; and why.
+    """Limits of each slider, per tick, with all else as it is; None = no limit can be proven; and why.
 
     both: how far Cs = Cd may go.
     """

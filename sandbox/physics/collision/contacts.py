@@ -148,7 +148,7 @@ def _passes(box: FloatRows, p: int, ax: float, ay: float, bx: float, by: float) 
 
 @inner_kernel
 def update_aabbs(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: FloatRows) -> None:
-    """The box in which a particle can be inside each owner's solid edges begin..end; hollow ones: it is everything."""
+    """Find the box in which a particle can be inside each owner's solid edges begin..end; hollow: everything."""
     solid = outline.solid
     for k in range(begin, end):
         first = colliders.edge_a[solid[k, 0]]

@@ -95,7 +95,7 @@ def _partner_of(p: int, end_b: int, attached: Flags, colliders: Colliders, touch
 
 @inner_kernel
 def load_arms(contacts: Contacts, count: int, colliders: Colliders) -> None:
-    """How the particles of the first `count` contacts turn; see Contacts."""
+    """Load the moment arms of the particles of the first `count` contacts; see Contacts."""
     for c in range(count):
         p = contacts.particle[c]
         a, b = contacts.end_a[c], contacts.end_b[c]
@@ -119,7 +119,7 @@ def load_arms(contacts: Contacts, count: int, colliders: Colliders) -> None:
 
 @inner_kernel
 def _load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, colliders: Colliders) -> None:
-    """The couple of a contact's particle (of 0) or its end_a (of 1), which is p, for an arm [m]."""
+    """Load the couple of a contact's particle (of 0) or its end_a (of 1), which is p, for an arm [m]."""
     contacts.couple[c, 2 * of] = contacts.couple[c, 2 * of + 1] = 0.0
     q = contacts.partner[c, of]
     if q >= 0:
@@ -211,7 +211,7 @@ def _belt_at(v: int, outline: Outline, state: State) -> float:
 def find_bounces(
     contacts: Contacts, count: int, start: FloatRows, velocity: FloatRows, attached: Flags, h: float, small: float
 ) -> None:
-    """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside.
+    """Find the bounce [m/s] of every contact, from the velocities before and after gravity and other loads.
 
     attached (n,): particles that a spring or a constraint holds; they fall in steps of h [s], others in those of
     `small`.

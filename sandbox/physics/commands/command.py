@@ -90,7 +90,7 @@ DENIED = 2**40
 
 
 class Commanded(NamedTuple):
-    """What commands change; a world block begins with it.
+    """The arrays that commands change; a world block begins with them.
 
     numbers, choices: the settings, see settings.py. areas (k, 2): of each body that keeps areas its first constraint,
     and the one behind its last. forms, modes: of bodies that may be stiff by their form.

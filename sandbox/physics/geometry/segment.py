@@ -131,7 +131,7 @@ def polygon_area(place: FloatRows, first: int, last: int) -> float:
 
 @inlined_kernel
 def winding_of_side(is_below_a: bool, is_below_b: bool, area: float) -> int:
-    """What a side from a to b adds to the winding number of a place, by which of the two are below that.
+    """The part of a side from a to b in the winding number of a place, by which of the two are below that.
 
     area: the `doubled_area` of a, b and the place. A ray to the right meets what rises with the place on its left, and
     what falls with it on its right.

@@ -28,7 +28,7 @@ Signature = tuple[Any, ...]
 
 
 class _Packed(NamedTuple):
-    """What lies in a bundle for an array or a tuple: its words and signature, and the parts of a tuple."""
+    """The entry of an array or a tuple in a bundle: its words and signature, and the parts of a tuple."""
 
     item: Any
     words: bytes
@@ -37,7 +37,7 @@ class _Packed(NamedTuple):
 
 
 class _Words(bytearray):
-    """What a bundle points to, and what its words are the addresses of, which lives as long.
+    """The words of a bundle, with the arrays that they are addresses of, which live as long.
 
     whole: the arrays that it was made of; memories: in which kernels put others.
     """
@@ -76,7 +76,7 @@ def _format(dimensions: int) -> struct.Struct:
 
 
 def signature_text(signature: Signature) -> str:
-    """What lies in a bundle in words that stay the same from process to process."""
+    """The layout of a bundle in words that stay the same from process to process."""
     first, *others = signature
     if isinstance(first, str):
         return f"{first}{others[0]}"

@@ -74,7 +74,7 @@ def _kept(folder: Path) -> tuple[Path, dict[str, Any]] | None:
 
 
 def _made(folder: Path, checked: bool) -> tuple[Path, dict[str, Any]]:
-    """What is kept in a folder, once it is compiled. Raises NoLibrary, OSError."""
+    """The compiled library in a folder, once it is made. Raises NoLibrary, OSError."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     # Processes that start together compile once: the others wait for the first.
     with FileLock(folder.parent / ".lock"):

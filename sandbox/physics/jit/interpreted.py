@@ -55,7 +55,7 @@ def interpreted(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def make(kernel: Any) -> Callable[..., Any]:
-    """What modules hold of a kernel that Python calls; parts of kernels get views already, and are left as they are."""
+    """The function that modules get for a kernel which Python calls; parts of kernels are left as they are."""
     made: Any = interpreted(kernel.function)
     made._kernel = kernel
     return cast(Callable[..., Any], made)

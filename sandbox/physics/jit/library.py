@@ -227,7 +227,7 @@ def _compiled_here(why: str, checked: bool) -> Library:
 
 
 def make(kernel: Any) -> Any:
-    """What modules hold of a kernel that Python calls; one of a program of its own is interpreted."""
+    """The function that modules get for a kernel which Python calls; one of an unknown program is interpreted."""
     library = open_library()
     return library.function(kernel.name) if kernel.name in library.entries else interpreted.make(kernel)
 

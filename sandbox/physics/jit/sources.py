@@ -122,7 +122,7 @@ def _imports(tree: ast.Module, names: set[str]) -> list[tuple[str, str, str]]:
 
 
 def kernel_part(text: bytes, others: Iterable[str] = ()) -> tuple[list[Any], list[tuple[str, str, str]]]:
-    """What machine code follows from in a file, and what of it is imported; others: names that other files take."""
+    """The part of a file that machine code follows from, and its imports; others: names that other files take."""
     tree = ast.parse(text)
     kept = [statement for statement in tree.body if _is_of_kernels(statement)]
     names, count = _names(kept) | set(others), -1

@@ -42,7 +42,7 @@ class JointRows(NamedTuple):
 
 
 class Actions(NamedTuple):
-    """What rows act on: nodes, each a body or a particle in none; an action is that of one row on one node."""
+    """The nodes that rows act on, each a body or a particle in none; an action is that of one row on one node."""
 
     start: Slots  # particles of node q: particle[start[q]:start[q + 1]],
     particle: Slots  # those of a body in the order of the matrix
@@ -309,7 +309,7 @@ def couple_joints(joints: Joints) -> None:
 
 @inner_kernel
 def couple_masses(joints: Joints, inverse_mass: Floats) -> None:
-    """The responses of rows, and of two with each other, where every particle answers by its own mass."""
+    """Find the responses of rows, and of two with each other, where every particle answers by its own mass."""
     rows, couplings = joints.rows, joints.couplings
     for k in range(rows.limit.shape[0]):
         other = k + 1 if rows.pair[k] == PAIR else k

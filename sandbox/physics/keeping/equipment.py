@@ -95,7 +95,7 @@ def height_of(form: StiffForm, gravity_x: float, gravity_y: float) -> float:
 
 @dataclass(frozen=True)
 class Surface:
-    """How a particle behaves at contacts: friction, restitution, group and collides, see StateArrays."""
+    """Contact properties of a particle: friction, restitution, group and collides, see StateArrays."""
 
     friction: float = 0.0
     restitution: float = 0.0

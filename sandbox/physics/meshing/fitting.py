@@ -120,7 +120,7 @@ def mesh_work(places: FloatRows, start: Slots, spacing: float) -> int:
 
 @kernel
 def outline_fault(corners: FloatRows, least_area: float) -> int:
-    """What is wrong with an outline that was drawn (n, 2) [m], by itself; FITS: nothing."""
+    """The fault of a drawn outline (n, 2) [m], by itself; FITS: none."""
     return _fault(corners, least_area)
 
 

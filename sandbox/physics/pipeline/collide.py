@@ -53,7 +53,7 @@ TIP_ROUNDS = 4
 
 
 class Collisions(NamedTuple):
-    """What topology decides of a world's collisions, and arrays that a step fills in."""
+    """The part of a world's collisions that its topology decides, and arrays that a step fills in."""
 
     outline: Outline
     triangles: Triangles

@@ -43,7 +43,7 @@ Pair = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class SpringMotion:
-    """How an error of a spring, or of a body's slowest wobble, goes back once it is let go.
+    """The decay of an error of a spring, or of a body's slowest wobble, once it is let go.
 
     hz, ratio: frequency [Hz] without damping, and damping ratio; inf where Cd is 1. swings: whether it crosses zero;
     half, rest [s]: when half of it, and when all but AT_REST is gone for good, inf: never.
@@ -197,7 +197,7 @@ def present_coefficients(world: World) -> tuple[Floats, Floats]:
 
 
 def common_pair(world: World, body: FirmBody) -> Pair | None:
-    """What the springs of a body have in common; None: they differ in Cs or Cd, or there are none."""
+    """Cs and Cd that all springs of a body share; None: they differ, or there are none."""
     springs = body.springs[world.spring_active[body.springs]]
     if not len(springs) or np.ptp(world.stiffness[springs]) or np.ptp(world.damping[springs]):
         return None

@@ -45,7 +45,7 @@ LOST, CALM, NEAR = 20.0, 2e-3, 0.02
 
 
 class Support(Enum):
-    """What a body is held by, and so what one sees of it under its weight."""
+    """The support of a body, and so what one sees of it under its weight."""
 
     FLOOR = "floor"  # it stands: its height becomes less
     ENDS = "ends"  # it lies on its ends: its middle drops

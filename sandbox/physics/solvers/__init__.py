@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Solver:
-    """What is known of one solver; the tick has its branch.
+    """Properties of one solver; the tick has its branch.
 
     proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it tests the
     energy of every step. joints_bear_load: whether what joints give, such as a motor's torque, carries wheels under a

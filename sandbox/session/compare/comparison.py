@@ -347,7 +347,7 @@ class ComparedRun:
 
 @dataclass(frozen=True)
 class RunDifference:
-    """Where two runs part. level, commands: lines, none where they are equal; divergence: None where no tick differs.
+    """The difference of two runs. level, commands: lines, none where they are equal; divergence: None: no tick differs.
 
     expected, actual: the runs at that tick, None of a recording to whose state this build does not come. ticks:
     compared. distance: of their particles, None where a run is not known. versions: where a recording is of another

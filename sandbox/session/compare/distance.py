@@ -35,7 +35,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class TrajectoryDistance:
-    """How far the particles of two runs are apart [m], of those that both have.
+    """Distances [m] of the particles of two runs, of those that both have.
 
     first: the first tick at which one is elsewhere, None: none ever is; heals: the tick from which on none is any more.
     farthest, particle, slots, tick: the largest distance, whose it is, by name and by slot in both runs, and when.

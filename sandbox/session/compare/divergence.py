@@ -149,7 +149,7 @@ def _setting_text(value: Any) -> str:
 
 
 def _other_rows(family: Family, known: World, found: World) -> str:
-    """What one of two worlds has alone that rows of a family belong to: rules and the like, or else bodies."""
+    """The rules, or else the bodies, that one of two worlds has alone and that rows of a family belong to."""
     if family not in OF_RULES:
         return counts_by_body(known, found)
     rows: list[str] = []
@@ -265,7 +265,7 @@ def array_of_hash(found: NDArray[Any], fits: Callable[[str], bool]) -> NDArray[A
 
 
 def _likely_changes(bits: int) -> Iterator[Callable[[NDArray[Any]], NDArray[Any]]]:
-    """What may have become of numbers of this many bits, read as unsigned, the likeliest first."""
+    """Ways in which numbers of this many bits, read as unsigned, may have changed, the likeliest first."""
 
     def moved(step: int) -> Callable[[NDArray[Any]], NDArray[Any]]:
         return lambda numbers: numbers + numbers.dtype.type(step % 2**bits)

@@ -30,7 +30,7 @@ REACH, PUSH = 0.25, 2.0
 
 @dataclass(frozen=True)
 class RolledBack:
-    """What came of going back. back, ticks: how far, and how often; commands: how many were carried out.
+    """The result of going back. back, ticks: how far, and how often; commands: how many were carried out.
 
     found: the first difference, None: there is none.
     """

@@ -88,7 +88,7 @@ class PlaybackData:
     def _form(
         self, state: State, particles: NDArray[np.bool_], springs: NDArray[np.bool_], areas: NDArray[np.bool_]
     ) -> dict[str, Any]:
-        """What is drawn while nothing joins, parts or is pinned: discs, lines and faces, each with a colour."""
+        """The shapes that are drawn until something joins, parts or is pinned: discs, lines and faces, with colours."""
         owners = self._owners(len(state.mass))
         slots, lines = np.flatnonzero(particles), np.flatnonzero(springs)
         first, count = state.constraint_first, state.constraint_corners
@@ -116,7 +116,7 @@ class PlaybackData:
 
 @dataclass(frozen=True)
 class ToldLine:
-    """What happened at a tick, in a line; side: the reel in which alone it did, None: in each."""
+    """An event of a tick, in a line; side: the run in which alone it happened, None: in each."""
 
     tick: int
     text: str
@@ -279,7 +279,7 @@ def watches_of(runs: Sequence[Session]) -> list[TouchWatch]:
 
 
 def told_of(runs: Sequence[Session], watches: Sequence[TouchWatch]) -> list[ToldLine]:
-    """What happened in a run, or in two: what both tell in the same tick is said once, all else of its side."""
+    """The events of a run, or of two: one in the same tick of both is said once, all others of their side."""
     rate = runs[0].level.settings.tick_rate
     sides = []
     for run, watch in zip(runs, watches, strict=True):

@@ -88,7 +88,7 @@ def fragment_of(replay: Replay, at: int = 0) -> str:
 
 
 def level_record(level: Level) -> dict[str, Any]:
-    """What links say of a level: the name of a shipped one, or all of it; and its digest."""
+    """The level as links hold it: the name of a shipped one, or all of it; and its digest."""
     shipped = (path.stem for path in shipped_levels() if load_level(path) == level)
     return {"level": next(shipped, None) or level_data(level), "digest": _digest(level)}
 
@@ -199,7 +199,7 @@ class PackingError(ValueError):
 
 @dataclass
 class _Hands:
-    """Where each hand moved to last [mm], and the gesture of its grab."""
+    """The last place of each hand [mm], and the gesture of its grab."""
 
     places: dict[int, tuple[int, int]] = field(default_factory=dict)
     gestures: dict[int, int] = field(default_factory=dict)

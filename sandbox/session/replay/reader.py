@@ -197,7 +197,7 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
 
 @dataclass
 class RunReading:
-    """What is read of a file of sealed lines, a recording or a scene; slots: particles and springs of its world."""
+    """Reads a file of sealed lines, a recording or a scene; slots: particles and springs of its world."""
 
     slots: int
     script: list[ScriptLine] = field(default_factory=list)
@@ -258,7 +258,7 @@ class RunReading:
 
 @dataclass
 class _RecordingReading(RunReading):
-    """What is read of a recording, whose chain is of a version; retold: see read_replay."""
+    """Reads a recording, whose chain of hashes is of a version; retold: see read_replay."""
 
     version: int = VERSION
     retold: bool = False
@@ -472,7 +472,7 @@ def kind_of(line: bytes) -> bytes:
 
 
 class _Inflated(io.RawIOBase):
-    """What gzip data hold. cut: whether they ended before their end. Raises ValueError where more follows it."""
+    """Data out of gzip. cut: whether they ended before their end. Raises ValueError where more follows it."""
 
     def __init__(self, raw: BinaryIO) -> None:
         self.cut = False

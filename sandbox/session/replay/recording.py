@@ -96,7 +96,7 @@ class StoredState:
 
 @dataclass(frozen=True)
 class ByHand:
-    """What was written into a recorded world past its commands, after so many ticks; no run can repeat that."""
+    """Arrays that were written into a recorded world past its commands, after so many ticks; no run can repeat that."""
 
     tick: int
     what: tuple[str, ...]
@@ -137,7 +137,7 @@ class Replay:
 
     @property
     def compared(self) -> str:
-        """What of a run is compared with it: every tick, or of a link, which has no hashes of ticks, its end."""
+        """The part of a run to compare: every tick, or of a link, which has no hashes of ticks, its end."""
         return "every tick" if self.hashes[0].whole else "its end"
 
     def fits(self, world: World) -> bool:

@@ -98,7 +98,7 @@ Renames = Mapping[str, str]
 
 
 def guessed_renames(before: Level, after: Level) -> dict[str, str]:
-    """What is called otherwise for certain: one body is gone and one is new, of the same type and counts."""
+    """The certain renames: one body is gone and one is new, of the same type and counts."""
     gone, fresh = defaultdict(list), defaultdict(list)
     old, new = _kinds(before), _kinds(after)
     for name in old.keys() - new.keys():

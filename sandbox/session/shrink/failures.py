@@ -54,7 +54,7 @@ class FailureWatch:
 
 
 class Failure(ABC):
-    """What goes wrong; a value that other processes can be given. Its text says it in a few words.
+    """A failure to look for; other processes can be given it. Its text says it in a few words.
 
     beyond: ticks after the end of a recording in which it may show.
     """
@@ -69,7 +69,7 @@ class Failure(ABC):
         """
 
     def raised(self, error: Exception) -> FailureSeen | None:
-        """What has failed where a tick raises an exception; None: that is another failure than this one."""
+        """The failure where a tick raises an exception; None: that is another failure than this one."""
         return None
 
 
@@ -329,7 +329,7 @@ class _PairWatch(FailureWatch):
 
 
 def usual_failures(level: Level) -> tuple[Failure, ...]:
-    """What is looked for where nothing is named: a crash, a check that fails, frozen particles."""
+    """The failures to look for where none is named: a crash, a check that fails, frozen particles."""
     return (Crashes(), *(CheckFails(name) for name in dict.fromkeys(check.name for check in level.checks)), Freezes())
 
 

@@ -32,7 +32,7 @@ MOST_SHOWN = 4
 
 @dataclass(frozen=True)
 class TriedPlay:
-    """What came of a play: what failed, None: not what was looked for; play: what of it was done until then."""
+    """The result of a play: the failure, None: not the one looked for; play: the part of it done until then."""
 
     seen: FailureSeen | None
     play: Play

@@ -169,7 +169,7 @@ def _compiling(unit: str, platform: Platform, checked: bool, sanitized: bool) ->
 
 
 def _linking(units: Sequence[str], symbols: Sequence[str], platform: Platform, sanitized: bool) -> list[str]:
-    """What zig is to do for a library of object files, with what compilers take for granted, such as memset."""
+    """The command for zig that links object files to a library, with what compilers need, such as memset."""
     runtime = ("-fcompiler-rt", "-fubsan-rt") if sanitized else ("-fcompiler-rt",)
     linked = (*_target(platform), *runtime, f"-femit-bin={platform.file}", *(f"{unit}.o" for unit in units))
     if platform.is_web:

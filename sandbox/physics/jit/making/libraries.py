@@ -86,7 +86,7 @@ def _runs_here() -> bool:
 
 
 def _differences(here_only: bool) -> list[str]:
-    """What differs from the sources, in lines; bytes are compared where the makers are the same."""
+    """The differences from the sources, in lines; bytes are compared where the makers are the same."""
     try:
         manifest = read_manifest()
     except NoLibrary as fault:

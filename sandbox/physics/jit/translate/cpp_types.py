@@ -224,7 +224,7 @@ def home(module: str, name: str) -> tuple[str, str]:
 
 
 def meaning(module: str, name: str) -> Any:
-    """What a name is at the top of a module: a Constant, a Kernel, a class, another module, or None: there is none."""
+    """The thing that a name is at the top of a module: a Constant, a Kernel, a class, another module, or None."""
     value = vars(importlib.import_module(module)).get(name)
     kernel = kernel_of(value)
     if kernel is not None:

@@ -86,7 +86,7 @@ class Program(Protocol):
     """What the translation of an expression needs to know of other kernels."""
 
     def called(self, kernel: Kernel, arguments: Sequence[Type]) -> Type | str:
-        """What a kernel gives for such arguments, or why it does not take them."""
+        """The result type of a kernel for such arguments, or why it does not take them."""
         ...
 
     def name_of(self, module: str, within: str, name: str) -> str:

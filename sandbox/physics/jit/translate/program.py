@@ -79,7 +79,7 @@ class Translation:
         return spelled(name) if module == within else f"{self._spaces.get(module, _space(module))}::{spelled(name)}"
 
     def called(self, kernel: Kernel, arguments: Sequence[Type]) -> Type | str:
-        """What a kernel gives for such arguments, or why it does not take them."""
+        """The result type of a kernel for such arguments, or why it does not take them."""
         self._calls[kernel] = None
         why = ""
         for signature in self.signatures(kernel):
@@ -93,7 +93,7 @@ class Translation:
         return why
 
     def signatures(self, kernel: Kernel) -> list[Signature]:
-        """What a kernel takes and gives: several, where an argument is one of several kinds. Raises Untranslatable."""
+        """Signatures of a kernel: several, where an argument is one of several kinds. Raises Untranslatable."""
         if kernel not in self._signatures:
             function = kernel.function
             line = function.__code__.co_firstlineno

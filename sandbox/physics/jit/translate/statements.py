@@ -386,7 +386,7 @@ Statements = list[ast.stmt]
 
 @dataclass
 class Declarations:
-    """Where names are declared: at the statements, by id, that first assign them, or before a statement.
+    """Places where names are declared: at the statements, by id, that first assign them, or before a statement.
 
     once: names that are assigned only there. hidden: loops whose own name is assigned or read elsewhere as well, so
     that C++ counts by another.

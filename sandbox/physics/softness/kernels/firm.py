@@ -54,7 +54,7 @@ class Forms(NamedTuple):
 
 
 class FormModes(NamedTuple):
-    """What was found of forms, which is no state: lowest modes, see UNKNOWN, of bodies (b,) and of their pieces.
+    """Measures kept of forms, which are no state: lowest modes, see UNKNOWN, of bodies (b,) and of their pieces.
 
     piece (n,): the k-th of a body is that of its k-th piece. point (n,), spring (m,), constraint (k,): the piece that
     each of its rows was of then, -1: of none.
@@ -103,7 +103,7 @@ class FormPiece(NamedTuple):
 
 
 class Firmable(NamedTuple):
-    """What `firm` changes and looks at, and the piece that `take_piece` lays out."""
+    """The arrays that `firm` changes and reads, and the piece that `take_piece` lays out."""
 
     state: State
     good: GoodValues
@@ -113,7 +113,7 @@ class Firmable(NamedTuple):
 
 
 class Firming(NamedTuple):
-    """What makes a body soft: what is asked, under gravity [m/s^2] at a tick rate [1/s], in so many ticks."""
+    """A request to make a body soft: the values, under gravity [m/s^2] at a tick rate [1/s], in so many ticks."""
 
     asked: Asked
     gravity_x: float

@@ -44,7 +44,7 @@ class Asked(NamedTuple):
 
 
 class Reach(NamedTuple):
-    """What firmness of a body depends on: its lowest mode, its height [m] along gravity [m/s^2], and the tick h [s]."""
+    """The limits of a body's firmness: its lowest mode, its height [m] along gravity [m/s^2], and the tick h [s]."""
 
     lowest_mode: float
     height: float

@@ -183,7 +183,7 @@ def plan_islands(
     contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows, spin: Floats,
     h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
-    """The places of all islands, and in how many small steps of h [s] each is solved; places are not known yet.
+    """Find the places of all islands, and in how many small steps of h [s] each is solved.
 
     start [m/s] (n, 2): the velocities before anything acted in this step.
     """
@@ -407,7 +407,7 @@ def look(work: FreeContactScratch, first: int, last: int) -> None:
 
 @inner_kernel
 def look_at(work: FreeContactScratch, i: int, late: float) -> None:
-    """Where a contact is so much later [s] within the small step; its gap is that of now along this normal."""
+    """Find a contact's normal so much later [s] within the small step; its gap is that of now along this normal."""
     row, motion = work.constraint, work.motion
     p, q = work.end[i, 0], work.end[i, 1]
     wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])

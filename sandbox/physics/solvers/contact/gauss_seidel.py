@@ -93,7 +93,7 @@ class Delassus(NamedTuple):
 
 
 class ContactConstraints(NamedTuple):
-    """What sweeps keep by contact, with room for more contacts; surface is by particle."""
+    """Terms of sweeps by contact, with room for more contacts; surface is by particle."""
 
     bias: Annotated[Floats, "contacts"]  # [m/s]: added to its velocity
     normal: Annotated[Floats, "contacts"]  # J W J^T [1/kg]: along the normal,

@@ -95,7 +95,7 @@ class Elimination(NamedTuple):
 
 
 class Tuning(NamedTuple):
-    """What decides how a system is laid out.
+    """Numbers that decide how a system is laid out.
 
     whole (4,): SMALLEST_BODY, LEAF_SIZE, WORTH_HALVING (fronts.py), NARROW (layout.py); narrowest (1,):
     NARROWEST_BORDER.

@@ -45,7 +45,7 @@ class FrontPlaces(NamedTuple):
 
 
 class FrontBlocks(NamedTuple):
-    """Where the blocks of large bodies lie: see Fronts."""
+    """Places of the blocks of large bodies: see Fronts."""
 
     of_row: Slots
     width: Slots
