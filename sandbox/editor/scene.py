@@ -284,6 +284,12 @@ def make_scene(level: Level, before: Scene | None = None) -> Scene:
     )
 
 
+def _radii(level: Level) -> Floats:
+    """Radius [m] of the particles of each body (k,)."""
+    radii = [body.particle_radius for body in level.bodies]
+    return np.array([BODY_RADIUS if radius is None else radius for radius in radii], dtype=np.float64)
+
+
 def _parts(level: Level, before: Scene | None) -> _Parts:
     if before is None:
         plan = kept_plan(level) or Plan(level)
@@ -308,25 +314,6 @@ def _parts(level: Level, before: Scene | None) -> _Parts:
     return _Parts(bodies, origin, forms, loose, names, links, ground)
 
 
-def _ground(level: Level) -> _Ground:
-    corners = [np.array(piece.polyline or piece.polygon, dtype=np.float64) for piece in level.terrain]
-    corners += map(outline_of, level.zones)
-    counts = [len(points) for points in corners]
-    closed = [*(piece.polygon is not None for piece in level.terrain), *(True for _ in level.zones)]
-    edges = [np.zeros((0, 2), dtype=np.int64)]
-    first = 0
-    for count, is_closed in zip(counts, closed, strict=True):
-        along = np.arange(first, first + count, dtype=np.int64)
-        edges.append(np.stack([along, np.roll(along, -1)], axis=1)[: count if is_closed else count - 1])
-        first += count
-    return _Ground(
-        corner=np.concatenate([np.zeros((0, 2)), *corners]),
-        counts=counts,
-        edge=np.concatenate(edges),
-        edge_counts=[len(edge) for edge in edges[1:]],
-    )
-
-
 def _joined(made: list[Expansion[Any]]) -> _Joined:
     counts = [each.form_count[0] for each in made]
     firsts = np.cumsum([0, *counts]).tolist()
@@ -341,42 +328,6 @@ def _joined(made: list[Expansion[Any]]) -> _Joined:
         numbers=np.concatenate([none[:, 0], *(each.numbers for each in made)]),
         rest_length=np.concatenate([np.zeros(0), *(_lengths_about_origin(each) for each in made)]),
         spring_counts=[len(each.pairs) for each in made],
-    )
-
-
-def _loose(level: Level) -> _Loose:
-    rows = [particle.__dict__ for particle in level.particles]
-    return _Loose(
-        position=positions(level.particles),
-        mass=np.fromiter(map(itemgetter("mass"), rows), np.float64, len(rows)),
-        radius=np.fromiter(map(itemgetter("radius"), rows), np.float64, len(rows)),
-        pinned=np.fromiter(map(itemgetter("pinned"), rows), np.bool_, len(rows)),
-    )
-
-
-def _radii(level: Level) -> Floats:
-    """Radius [m] of the particles of each body (k,)."""
-    radii = [body.particle_radius for body in level.bodies]
-    return np.array([BODY_RADIUS if radius is None else radius for radius in radii], dtype=np.float64)
-
-
-def positions(particles: Sequence[ParticleDef]) -> Floats:
-    """Places of loose particles [m] (n, 2)."""
-    places = chain.from_iterable([particle.__dict__["position"] for particle in particles])
-    return np.fromiter(places, np.float64, 2 * len(particles)).reshape(-1, 2)
-
-
-def _links(level: Level, names: _Names) -> _Links:
-    materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
-    index = {name: number for number, name in enumerate(materials)}
-    slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
-    lengths = (spring.given_length for spring in level.springs)
-    rest = [np.nan if length is None else length for length in lengths]
-    return _Links(
-        ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
-        rest_length=np.array(rest, dtype=np.float64),
-        material=np.array([index[spring.material] for spring in level.springs], dtype=np.int64),
-        materials=materials,
     )
 
 
@@ -416,6 +367,55 @@ def _form_key(body: AnyBody) -> tuple[Any, ...] | None:
     if "position" not in body.__dict__ or body.pose is not None:
         return None
     return type(body), *(value for name, value in body.__dict__.items() if name not in _PLACED)
+
+
+def _loose(level: Level) -> _Loose:
+    rows = [particle.__dict__ for particle in level.particles]
+    return _Loose(
+        position=positions(level.particles),
+        mass=np.fromiter(map(itemgetter("mass"), rows), np.float64, len(rows)),
+        radius=np.fromiter(map(itemgetter("radius"), rows), np.float64, len(rows)),
+        pinned=np.fromiter(map(itemgetter("pinned"), rows), np.bool_, len(rows)),
+    )
+
+
+def positions(particles: Sequence[ParticleDef]) -> Floats:
+    """Places of loose particles [m] (n, 2)."""
+    places = chain.from_iterable([particle.__dict__["position"] for particle in particles])
+    return np.fromiter(places, np.float64, 2 * len(particles)).reshape(-1, 2)
+
+
+def _links(level: Level, names: _Names) -> _Links:
+    materials = tuple({DEFAULT_MATERIAL: None} | dict.fromkeys(level.materials))
+    index = {name: number for number, name in enumerate(materials)}
+    slots = [(names.layout.slot(spring.a), names.layout.slot(spring.b)) for spring in level.springs]
+    lengths = (spring.given_length for spring in level.springs)
+    rest = [np.nan if length is None else length for length in lengths]
+    return _Links(
+        ends=np.array(slots, dtype=np.int64).reshape(-1, 2),
+        rest_length=np.array(rest, dtype=np.float64),
+        material=np.array([index[spring.material] for spring in level.springs], dtype=np.int64),
+        materials=materials,
+    )
+
+
+def _ground(level: Level) -> _Ground:
+    corners = [np.array(piece.polyline or piece.polygon, dtype=np.float64) for piece in level.terrain]
+    corners += map(outline_of, level.zones)
+    counts = [len(points) for points in corners]
+    closed = [*(piece.polygon is not None for piece in level.terrain), *(True for _ in level.zones)]
+    edges = [np.zeros((0, 2), dtype=np.int64)]
+    first = 0
+    for count, is_closed in zip(counts, closed, strict=True):
+        along = np.arange(first, first + count, dtype=np.int64)
+        edges.append(np.stack([along, np.roll(along, -1)], axis=1)[: count if is_closed else count - 1])
+        first += count
+    return _Ground(
+        corner=np.concatenate([np.zeros((0, 2)), *corners]),
+        counts=counts,
+        edge=np.concatenate(edges),
+        edge_counts=[len(edge) for edge in edges[1:]],
+    )
 
 
 def outline_of(zone: ZoneDef) -> NDArray[np.float64]:

@@ -220,6 +220,12 @@ def in_order(events_of: Iterable[Event]) -> list[Event]:
     return sorted(events_of, key=_when)
 
 
+def _when(event: Event) -> tuple[int, int, int]:
+    """Sort key: the tick; in one tick deeds before what came of them, and questions of rules before actions."""
+    kind = event.kind
+    return event.tick, KINDS.index(kind) if kind in KINDS else -1, event.last
+
+
 def shortened(events_of: Sequence[Event], most: int = MOST_LINES) -> tuple[list[Event], int]:
     """At most so many events, and how many were left out: the last of those of touching, and no others."""
     touches = [each for each in events_of if each.kind in _OF_TOUCHES]
@@ -431,12 +437,6 @@ def listed(names: Iterable[str]) -> str:
     if more > 1:
         return f"{', '.join(shown)} and {more} more"
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
-
-
-def _when(event: Event) -> tuple[int, int, int]:
-    """Sort key: the tick; in one tick deeds before what came of them, and questions of rules before actions."""
-    kind = event.kind
-    return event.tick, KINDS.index(kind) if kind in KINDS else -1, event.last
 
 
 def _joined(those: list[Event], gap: int, many: Callable[[str, list[Event]], str]) -> Iterator[Event]:

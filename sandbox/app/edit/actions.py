@@ -101,6 +101,34 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
     )
 
 
+def ask_to_keep_part(screen: Editing) -> None:
+    """Ask for the name of a part, and write it."""
+    document = screen.document
+    if not document.selection:
+        screen.say("Select what the part consists of first.")
+        return
+    names = {getattr(part, "group", None) for part in chosen_definitions(document.level, document.selection)}
+    one = names.pop() if len(names) == 1 else None
+    first = chosen_definitions(document.level, document.selection)[0]
+    kept: list[Path] = []
+    suggestion: str = one or getattr(first, "id", None) or "Part"
+
+    def answer(typed: str) -> str | None:
+        try:
+            path = keep_part(part_of(document, typed))
+        except (EditError, StorageError) as error:
+            return sentence(error)
+        kept.append(path)
+        return None
+
+    def show(typed: str) -> None:
+        screen.say(f"{typed} is in the catalogue now, under Your own parts.")
+        screen.show_parts(kept[-1])
+
+    hint = "The selection becomes a part that you can use in all your levels."
+    ask(screen.ui, "Keep as a part", hint, capitalised(suggestion), "Keep", answer, then=show)
+
+
 def _viewing(screen: Editing) -> dict[str, Callable[[], object]]:
     """The actions that change what is seen, and nothing of the level but where it begins."""
     return {
@@ -123,23 +151,42 @@ def _viewing(screen: Editing) -> dict[str, Callable[[], object]]:
     }
 
 
-def _show_menu(screen: Editing, app: Application) -> None:
-    """Open the menu of actions that have no button."""
-    entries = [entry for entry in shortcuts("edit") if entry.action in (*MENU, *screen.without_button)]
-    choices = [(tip_of(entry.action, "edit"), partial(app.act, entry.action)) for entry in entries]
-    choose(screen.ui, "More", "", choices, columns=2)
+def _toggle_snap(screen: Editing) -> None:
+    screen.snapping = not screen.snapping
+    screen.say("Snapping is on." if screen.snapping else "Snapping is off.")
 
 
-def _show_parts(screen: Editing) -> None:
-    """Show the catalogue, and let the keyboard choose from it."""
-    screen.choose_tool("part")
-    screen.show_parts()
+def _ask_grid_step(screen: Editing) -> None:
+    """Ask for the distance of the points that the pointer snaps to."""
+
+    def take(typed: str) -> str | None:
+        if not typed:
+            screen.set_grid(None)
+            return None
+        try:
+            step = _number(typed)
+        except ValueError as error:
+            return str(error)
+        if not SMALLEST_GRID <= step <= LARGEST_GRID:
+            return f"A step lies between {SMALLEST_GRID:g} and {LARGEST_GRID:g} m."
+        screen.set_grid(step)
+        return None
+
+    hint = "In metres, such as 0.25. Leave it empty to let the grid follow the zoom."
+    ask(screen.ui, "Step of the grid", hint, f"{screen.grid:g}", "Take it", take)
 
 
-def _has_selection(screen: Editing) -> bool:
-    if not screen.document.selection:
-        screen.say("Nothing is selected.")
-    return bool(screen.document.selection)
+def _toggle_lattice(screen: Editing) -> None:
+    screen.shows_lattice = not screen.shows_lattice
+    screen.say("Springs and particles are shown." if screen.shows_lattice else "The level is shown as it is played.")
+
+
+def _adjust_or_zoom(screen: Editing, by: int) -> None:
+    """Count the parts of what is drawn up or down, or zoom."""
+    if isinstance(screen.pointer_tool, DrawTool) and screen.pointer_tool.drawing.under_way:
+        screen.pointer_tool.adjust(by)
+    else:
+        screen.camera.zoom_at(screen.cursor, 2 * by)
 
 
 def _hide(screen: Editing) -> None:
@@ -161,12 +208,10 @@ def _lock(screen: Editing) -> None:
     screen.select(frozenset())
 
 
-def _edit_selection(screen: Editing, label: str, function: Callable[[Document], Document], otherwise: str = "") -> None:
-    """Edit what is selected; otherwise: what is said where that changes nothing."""
-    before = screen.document.level
-    is_made = _has_selection(screen) and screen.edit(label, function)
-    if is_made and otherwise and screen.document.level is before:
-        screen.say(otherwise)
+def _show_parts(screen: Editing) -> None:
+    """Show the catalogue, and let the keyboard choose from it."""
+    screen.choose_tool("part")
+    screen.show_parts()
 
 
 def _step(screen: Editing, by: int) -> None:
@@ -195,16 +240,68 @@ def _duplicate(screen: Editing) -> None:
         screen.reveal(screen.document.selection)
 
 
+def _delete_or_back(screen: Editing) -> None:
+    """Take the last point of what is drawn back, or delete the selection."""
+    if isinstance(screen.pointer_tool, DrawTool) and screen.pointer_tool.drawing.under_way:
+        screen.pointer_tool.drawing.back()
+    elif not (isinstance(screen.pointer_tool, SelectTool) and screen.pointer_tool.delete_corner()):
+        _edit_selection(screen, "Delete", delete)
+
+
+def _finish(screen: Editing) -> None:
+    if isinstance(screen.pointer_tool, DrawTool):
+        screen.pointer_tool.finish()
+
+
+def _visit(screen: Editing, by: int) -> None:
+    """Select the next item of the file, or the one before."""
+    items = [item for item in screen.scene.items if item not in screen.visibility.closed]
+    if not items:
+        return
+    chosen = [index for index, item in enumerate(items) if item in screen.document.selection]
+    start = (chosen[-1] if by > 0 else chosen[0]) if chosen else (-1 if by > 0 else 0)
+    item: Item = items[(start + by) % len(items)]
+    screen.select(frozenset({item}))
+
+
+def _unjoined(document: Document) -> Document:
+    """The document without the welds of the selected bodies and particles."""
+    ids = {str(item.key) for item in document.selection if item.kind != "spring"}
+    for pair in document.level.welds:
+        for name in pair:
+            if name.partition(".")[0] in ids:
+                document = unweld(document, name)
+                break
+    return document
+
+
 def _reorder(screen: Editing, to: Place) -> None:
     where = "front" if to in ("front", "forward") else "back"
     _edit_selection(screen, f"Order: {to}", lambda document: reorder(document, to), f"It is at the {where} already.")
 
 
-def _box(screen: Editing) -> Box | None:
-    box = screen.selection_box
-    if box is None:
+def _edit_selection(screen: Editing, label: str, function: Callable[[Document], Document], otherwise: str = "") -> None:
+    """Edit what is selected; otherwise: what is said where that changes nothing."""
+    before = screen.document.level
+    is_made = _has_selection(screen) and screen.edit(label, function)
+    if is_made and otherwise and screen.document.level is before:
+        screen.say(otherwise)
+
+
+def _has_selection(screen: Editing) -> bool:
+    if not screen.document.selection:
         screen.say("Nothing is selected.")
-    return box
+    return bool(screen.document.selection)
+
+
+def _ask_material(screen: Editing) -> None:
+    colours = material_colours(screen.scene.level.materials)
+
+    def take(index: int) -> None:
+        screen.select(items_of_material(screen.document.level, list(colours)[index]))
+
+    rows = [Row(name, swatch=colour) for name, colour in colours.items()]
+    choose_row(screen.ui, "Select everything made of one material", rows, take)
 
 
 def _ask_mirror(screen: Editing) -> None:
@@ -231,64 +328,11 @@ def _ask_mirror(screen: Editing) -> None:
     choose(screen.ui, "Mirror", "Which way should it be mirrored?", choices, columns=2)
 
 
-def _ask_order(screen: Editing) -> None:
-    if not _has_selection(screen):
-        return
-    places: tuple[tuple[str, Place], ...] = (
-        ("To the front", "front"), ("Forward", "forward"), ("Backward", "backward"), ("To the back", "back"),
-    )  # fmt: skip
-    text = "Things later in the file are drawn in front of earlier ones."
-    choose(screen.ui, "Order", text, [(label, partial(_reorder, screen, to)) for label, to in places])
-
-
-def _ask_align(screen: Editing) -> None:
-    if not _has_selection(screen):
-        return
-    edges: tuple[tuple[str, Edge], ...] = (
-        ("Left edges", "left"), ("Right edges", "right"), ("Top edges", "top"), ("Bottom edges", "bottom"),
-        ("Middles, side by side", "centre_y"), ("Middles, one above another", "centre_x"),
-    )  # fmt: skip
-    choices: list[tuple[str, Callable[[], object]]] = [
-        (label, lambda edge=edge: screen.edit("Align", lambda document: align(document, edge)))  # type: ignore[misc]
-        for label, edge in edges
-    ]
-    choices += [
-        ("Even gaps across", lambda: screen.edit("Distribute", lambda document: distribute(document, "x"))),
-        ("Even gaps upward", lambda: screen.edit("Distribute", lambda document: distribute(document, "y"))),
-    ]
-    choose(screen.ui, "Align", "Line up what is selected.", choices, columns=2)
-
-
-def _ask_parts(screen: Editing) -> None:
-    names = ("group", "ungroup", "break_apart", "unjoin")
-    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
-    choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
-    text = (
-        "A click selects the whole group. A double click selects one member. "
-        "Breaking a body apart turns it into loose particles and springs."
-    )
-    choose(screen.ui, "Parts", text, choices)
-
-
-def _ask_material(screen: Editing) -> None:
-    colours = material_colours(screen.scene.level.materials)
-
-    def take(index: int) -> None:
-        screen.select(items_of_material(screen.document.level, list(colours)[index]))
-
-    rows = [Row(name, swatch=colour) for name, colour in colours.items()]
-    choose_row(screen.ui, "Select everything made of one material", rows, take)
-
-
-def _unjoined(document: Document) -> Document:
-    """The document without the welds of the selected bodies and particles."""
-    ids = {str(item.key) for item in document.selection if item.kind != "spring"}
-    for pair in document.level.welds:
-        for name in pair:
-            if name.partition(".")[0] in ids:
-                document = unweld(document, name)
-                break
-    return document
+def _box(screen: Editing) -> Box | None:
+    box = screen.selection_box
+    if box is None:
+        screen.say("Nothing is selected.")
+    return box
 
 
 def _ask_array(screen: Editing) -> None:
@@ -343,6 +387,45 @@ def _ask_circle(screen: Editing) -> None:
     )  # fmt: skip
 
 
+def _ask_parts(screen: Editing) -> None:
+    names = ("group", "ungroup", "break_apart", "unjoin")
+    labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
+    choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
+    text = (
+        "A click selects the whole group. A double click selects one member. "
+        "Breaking a body apart turns it into loose particles and springs."
+    )
+    choose(screen.ui, "Parts", text, choices)
+
+
+def _ask_align(screen: Editing) -> None:
+    if not _has_selection(screen):
+        return
+    edges: tuple[tuple[str, Edge], ...] = (
+        ("Left edges", "left"), ("Right edges", "right"), ("Top edges", "top"), ("Bottom edges", "bottom"),
+        ("Middles, side by side", "centre_y"), ("Middles, one above another", "centre_x"),
+    )  # fmt: skip
+    choices: list[tuple[str, Callable[[], object]]] = [
+        (label, lambda edge=edge: screen.edit("Align", lambda document: align(document, edge)))  # type: ignore[misc]
+        for label, edge in edges
+    ]
+    choices += [
+        ("Even gaps across", lambda: screen.edit("Distribute", lambda document: distribute(document, "x"))),
+        ("Even gaps upward", lambda: screen.edit("Distribute", lambda document: distribute(document, "y"))),
+    ]
+    choose(screen.ui, "Align", "Line up what is selected.", choices, columns=2)
+
+
+def _ask_order(screen: Editing) -> None:
+    if not _has_selection(screen):
+        return
+    places: tuple[tuple[str, Place], ...] = (
+        ("To the front", "front"), ("Forward", "forward"), ("Backward", "backward"), ("To the back", "back"),
+    )  # fmt: skip
+    text = "Things later in the file are drawn in front of earlier ones."
+    choose(screen.ui, "Order", text, [(label, partial(_reorder, screen, to)) for label, to in places])
+
+
 def _ask_wave(screen: Editing) -> None:
     """Ask for a wave through muscles in their order."""
     hint = "Phases of the selected muscles, or of all, from first to last."
@@ -365,6 +448,13 @@ def _ask_numbers(
     fill_in(screen.ui, title, hint, [(label, text) for label, text, _ in fields], "Make", make)
 
 
+def _count(text: str) -> int:
+    value = _number(text)
+    if value != int(value) or not 2 <= value <= COPY_LIMIT:
+        raise ValueError(f"How many: {text!r} is no whole number from 2 to {COPY_LIMIT:,}.")
+    return int(value)
+
+
 def _number(text: str) -> float:
     try:
         value = float(text.replace(",", "."))
@@ -375,98 +465,8 @@ def _number(text: str) -> float:
     return value
 
 
-def _count(text: str) -> int:
-    value = _number(text)
-    if value != int(value) or not 2 <= value <= COPY_LIMIT:
-        raise ValueError(f"How many: {text!r} is no whole number from 2 to {COPY_LIMIT:,}.")
-    return int(value)
-
-
-def _toggle_snap(screen: Editing) -> None:
-    screen.snapping = not screen.snapping
-    screen.say("Snapping is on." if screen.snapping else "Snapping is off.")
-
-
-def _ask_grid_step(screen: Editing) -> None:
-    """Ask for the distance of the points that the pointer snaps to."""
-
-    def take(typed: str) -> str | None:
-        if not typed:
-            screen.set_grid(None)
-            return None
-        try:
-            step = _number(typed)
-        except ValueError as error:
-            return str(error)
-        if not SMALLEST_GRID <= step <= LARGEST_GRID:
-            return f"A step lies between {SMALLEST_GRID:g} and {LARGEST_GRID:g} m."
-        screen.set_grid(step)
-        return None
-
-    hint = "In metres, such as 0.25. Leave it empty to let the grid follow the zoom."
-    ask(screen.ui, "Step of the grid", hint, f"{screen.grid:g}", "Take it", take)
-
-
-def _toggle_lattice(screen: Editing) -> None:
-    screen.shows_lattice = not screen.shows_lattice
-    screen.say("Springs and particles are shown." if screen.shows_lattice else "The level is shown as it is played.")
-
-
-def _adjust_or_zoom(screen: Editing, by: int) -> None:
-    """Count the parts of what is drawn up or down, or zoom."""
-    if isinstance(screen.pointer_tool, DrawTool) and screen.pointer_tool.drawing.under_way:
-        screen.pointer_tool.adjust(by)
-    else:
-        screen.camera.zoom_at(screen.cursor, 2 * by)
-
-
-def _delete_or_back(screen: Editing) -> None:
-    """Take the last point of what is drawn back, or delete the selection."""
-    if isinstance(screen.pointer_tool, DrawTool) and screen.pointer_tool.drawing.under_way:
-        screen.pointer_tool.drawing.back()
-    elif not (isinstance(screen.pointer_tool, SelectTool) and screen.pointer_tool.delete_corner()):
-        _edit_selection(screen, "Delete", delete)
-
-
-def _finish(screen: Editing) -> None:
-    if isinstance(screen.pointer_tool, DrawTool):
-        screen.pointer_tool.finish()
-
-
-def _visit(screen: Editing, by: int) -> None:
-    """Select the next item of the file, or the one before."""
-    items = [item for item in screen.scene.items if item not in screen.visibility.closed]
-    if not items:
-        return
-    chosen = [index for index, item in enumerate(items) if item in screen.document.selection]
-    start = (chosen[-1] if by > 0 else chosen[0]) if chosen else (-1 if by > 0 else 0)
-    item: Item = items[(start + by) % len(items)]
-    screen.select(frozenset({item}))
-
-
-def ask_to_keep_part(screen: Editing) -> None:
-    """Ask for the name of a part, and write it."""
-    document = screen.document
-    if not document.selection:
-        screen.say("Select what the part consists of first.")
-        return
-    names = {getattr(part, "group", None) for part in chosen_definitions(document.level, document.selection)}
-    one = names.pop() if len(names) == 1 else None
-    first = chosen_definitions(document.level, document.selection)[0]
-    kept: list[Path] = []
-    suggestion: str = one or getattr(first, "id", None) or "Part"
-
-    def answer(typed: str) -> str | None:
-        try:
-            path = keep_part(part_of(document, typed))
-        except (EditError, StorageError) as error:
-            return sentence(error)
-        kept.append(path)
-        return None
-
-    def show(typed: str) -> None:
-        screen.say(f"{typed} is in the catalogue now, under Your own parts.")
-        screen.show_parts(kept[-1])
-
-    hint = "The selection becomes a part that you can use in all your levels."
-    ask(screen.ui, "Keep as a part", hint, capitalised(suggestion), "Keep", answer, then=show)
+def _show_menu(screen: Editing, app: Application) -> None:
+    """Open the menu of actions that have no button."""
+    entries = [entry for entry in shortcuts("edit") if entry.action in (*MENU, *screen.without_button)]
+    choices = [(tip_of(entry.action, "edit"), partial(app.act, entry.action)) for entry in entries]
+    choose(screen.ui, "More", "", choices, columns=2)

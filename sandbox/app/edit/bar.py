@@ -79,17 +79,6 @@ SHORT = {
 }  # fmt: skip
 
 
-def _add_button(
-    ui: Ui, press: Callable[[str], None], back: Widget, action: str, icon: str, place: pygame.Rect, name: str = ""
-) -> Button:
-    """A button that starts an action; with a name beside its icon where there is one."""
-    size = place.height / ui.scale
-    return ui.button(
-        place, name, partial(press, action), back, icon=icon, tip=tip_of(action, "edit"),
-        icon_size=min(size - 5.0, ICON) if name else ICON * size / BUTTON, style="tool" if name else "quiet",
-    )  # fmt: skip
-
-
 class Bar:
     """The bar at the top; `press` starts an action by its name."""
 
@@ -146,24 +135,6 @@ class Bar:
             self.title.show_text(name)
 
 
-def palette_columns(height: float) -> int:
-    """Columns of tools that a palette of that height [layout units] has: as few as leave its buttons large enough."""
-    return min(3, max(1, -(-len(TOOLS) // max(1, int((height - 8) // LEAST_TOOL_PITCH)))))
-
-
-def _has_names(width: float, height: float) -> bool:
-    """Whether a palette of that height in a window of that width [layout units] has room for the names of tools."""
-    return width >= ROOM_FOR_TOOL_NAMES and height - len(TOOL_GROUPS) * HEADING >= LEAST_NAMED_PITCH * len(TOOLS)
-
-
-def palette_width(width: float, height: float) -> float:
-    """Width [layout units] of a palette of that height in a window of that width."""
-    if _has_names(width, height):
-        return NAMED_WIDTH
-    columns = palette_columns(height)
-    return PALETTE_WIDTH if columns == 1 else 8.0 + columns * TOOL_COLUMN
-
-
 class Palette:
     """The tools, at the left edge below the bar: in groups with names where there is room, else icons in columns."""
 
@@ -203,6 +174,35 @@ class Palette:
         """Mark the tool in use."""
         for name, button in self.tools.items():
             button.is_selected = name == tool
+
+
+def palette_width(width: float, height: float) -> float:
+    """Width [layout units] of a palette of that height in a window of that width."""
+    if _has_names(width, height):
+        return NAMED_WIDTH
+    columns = palette_columns(height)
+    return PALETTE_WIDTH if columns == 1 else 8.0 + columns * TOOL_COLUMN
+
+
+def palette_columns(height: float) -> int:
+    """Columns of tools that a palette of that height [layout units] has: as few as leave its buttons large enough."""
+    return min(3, max(1, -(-len(TOOLS) // max(1, int((height - 8) // LEAST_TOOL_PITCH)))))
+
+
+def _has_names(width: float, height: float) -> bool:
+    """Whether a palette of that height in a window of that width [layout units] has room for the names of tools."""
+    return width >= ROOM_FOR_TOOL_NAMES and height - len(TOOL_GROUPS) * HEADING >= LEAST_NAMED_PITCH * len(TOOLS)
+
+
+def _add_button(
+    ui: Ui, press: Callable[[str], None], back: Widget, action: str, icon: str, place: pygame.Rect, name: str = ""
+) -> Button:
+    """A button that starts an action; with a name beside its icon where there is one."""
+    size = place.height / ui.scale
+    return ui.button(
+        place, name, partial(press, action), back, icon=icon, tip=tip_of(action, "edit"),
+        icon_size=min(size - 5.0, ICON) if name else ICON * size / BUTTON, style="tool" if name else "quiet",
+    )  # fmt: skip
 
 
 class _Entry(NamedTuple):

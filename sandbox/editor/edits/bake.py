@@ -69,15 +69,6 @@ def keep_coefficients(document: Document, world: World) -> Document:
     return document
 
 
-def keep_settings(document: Document, world: World) -> Document:
-    """Take over gravity, solver and whatever else was set of the whole world while it ran. Raises EditError."""
-    for name in CHANGEABLE_SETTINGS:
-        played = getattr(world.settings, name)
-        if played != getattr(document.level.settings, name):
-            document = set_setting(document, name, played)
-    return document
-
-
 def _keep_firmness(document: Document, world: World) -> tuple[Document, Mask]:
     """Take over the firmness of every body; and which springs (m,) have their Cs and Cd from one."""
     level, is_firm = document.level, world.lowest_mode > 0.0
@@ -108,6 +99,15 @@ def as_firm(body: AnyBody, form: FirmBody, world: World, settings: Settings) -> 
     hz, ratio = reach.reading(*of_body(*present, mode))[1:]
     near = reach.nearest(Firmness(hz=significant(hz, FIRMNESS_DIGITS), ratio=significant(ratio, FIRMNESS_DIGITS)))
     return replaced(body, firmness=FirmnessDef(hz=near.hz, ratio=near.ratio))
+
+
+def keep_settings(document: Document, world: World) -> Document:
+    """Take over gravity, solver and whatever else was set of the whole world while it ran. Raises EditError."""
+    for name in CHANGEABLE_SETTINGS:
+        played = getattr(world.settings, name)
+        if played != getattr(document.level.settings, name):
+            document = set_setting(document, name, played)
+    return document
 
 
 def keep_pose(document: Document, world: World) -> Document:
@@ -176,6 +176,10 @@ def _posed(document: Document, scene: Scene, now: Points, angle: Points) -> Docu
         springs=tuple(measured(index, spring) for index, spring in enumerate(level.springs)),
     )
     return document if level is document.level else replace(document, level=checked(level))
+
+
+def _points(points: Points) -> tuple[tuple[float, float], ...]:
+    return tuple((x, y) for x, y in points.tolist())
 
 
 def _followed(body: AnyBody, before: Points, now: Points) -> dict[str, Any]:
@@ -265,10 +269,6 @@ def _slots(scene: Scene, world: World) -> Slots:
         raise EditError(_ANOTHER)
     slots: Slots = (np.cumsum(stays) - 1)[scene.first_of_weld]
     return slots
-
-
-def _points(points: Points) -> tuple[tuple[float, float], ...]:
-    return tuple((x, y) for x, y in points.tolist())
 
 
 def keep_added(document: Document, world: LevelWorld) -> Document:
