@@ -9,9 +9,10 @@ from sandbox.physics.snapshot import state_hash
 from sandbox.session.scene import read_scene
 from tests.app.conftest import Driver
 from tests.support.scene_player import ScenePlayer, first_level, unreachable
+from tests.support.wholes import some_and_whole
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
-RUNS, ALL_RUNS = 6, 40
+RUNS = 40
 DEEDS = 16
 
 
@@ -34,9 +35,7 @@ def toy(open_app):
     return driver
 
 
-@pytest.mark.parametrize(
-    "seed", [*range(RUNS), *(pytest.param(seed, marks=pytest.mark.whole_world) for seed in range(RUNS, ALL_RUNS))]
-)
+@pytest.mark.parametrize("seed", some_and_whole(range(2), range(RUNS)))
 def test_all_that_stood_on_the_screen_can_be_had_back(seed, documents):
     player = ScenePlayer(Driver(first_level(seed)), seed)
     player.go_on(DEEDS)

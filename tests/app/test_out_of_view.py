@@ -10,6 +10,7 @@ from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.session.commands import MoveBody
 from tests.app.conftest import small_level
 from tests.app.test_following import flying, places
+from tests.support.wholes import some_and_whole
 
 # The ball of one throws bricks out of the picture.
 LEVELS = [path.stem for path in shipped_levels() if path.stem != "wrecking_ball"]
@@ -88,7 +89,7 @@ def test_what_hangs_on_something_that_is_held_stays(open_app):
     assert not button(driver).visible
 
 
-@pytest.mark.parametrize("name", LEVELS[::2])
+@pytest.mark.parametrize("name", some_and_whole(LEVELS[::6], LEVELS[::2]))
 def test_no_level_has_lost_anything_by_itself_after_some_seconds(open_app, name):
     driver = open_app(load_level(name))
     driver.pass_unseen(240)

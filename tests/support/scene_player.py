@@ -145,7 +145,7 @@ class ScenePlayer:
         self._note()
         self.driver.app.scenes.shelf.settle()
         self.driver.app.screen = None
-        self.driver.app.scenes.shelf._writer._wanted.clear()
+        self.driver.app.scenes.shelf._writer._queued.clear()
         self.driver.app.close()
 
 
