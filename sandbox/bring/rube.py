@@ -379,7 +379,7 @@ def _corners_around(body: BodyDef, place: Vector) -> list[int]:
 
 
 def _let_pass(found: JoinedBodies, left_out: LeftOut) -> None:
-    """Let joined bodies pass through each other, by a collision group for each."""
+    """Give joined bodies a collision group each, so that they pass through each other."""
     partners: dict[str, set[str]] = {}
     for one, other in found.passing:
         partners.setdefault(one, set()).add(other)

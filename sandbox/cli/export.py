@@ -17,7 +17,7 @@ FORMS = ("flat", "svg", "pymunk", COMMANDS)
 
 @dataclass(frozen=True, kw_only=True)
 class ExportOptions:
-    """Which level, in which form, and where it goes."""
+    """Options of `export`: the level, the form, and where it goes."""
 
     level: str | None = optional_argument(str, "LEVEL", "a level; with --to commands a recording")
     to: str = option_or(

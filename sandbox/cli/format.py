@@ -10,7 +10,7 @@ from sandbox.cli.base.inputs import EXIT_OK, Refused
 
 @dataclass(frozen=True, kw_only=True)
 class FormatOptions:
-    """Which file."""
+    """Options of `format`: the file."""
 
     file: Path = argument(Path, "FILE")
 

@@ -31,7 +31,7 @@ class InfoOptions:
 
 
 def info(options: InfoOptions) -> int:
-    """Tell what recordings hold, and what happened in them when. Raises Refused."""
+    """Print what recordings hold, and what happened in them when. Raises Refused."""
     for number, name in enumerate(options.files):
         replay = _recording(name) if is_replay(name) else None
         level = level_of(name) if replay is None else replay.level

@@ -9,7 +9,7 @@ from sandbox.cli.play import PlayOptions, play
 
 @dataclass(frozen=True, kw_only=True)
 class OpenOptions(WindowOptions):
-    """Which link to open, and how."""
+    """Options of `open-link`: the link, and how to open it."""
 
     link: str = argument(str, "LINK", "a link to a run, with or without the address before its #")
 

@@ -8,7 +8,7 @@ from sandbox.cli.base.inputs import EXIT_OK, recording_of
 
 @dataclass(frozen=True, kw_only=True)
 class ShowOptions:
-    """Which recording."""
+    """Options of `show`: the recording."""
 
     file: str = argument(str, "FILE", "a recording, also one of another physics version, or one that is cut off")
 

@@ -24,7 +24,7 @@ MOST_SHOWN = 12
 
 @dataclass(frozen=True, kw_only=True)
 class ShrinkOptions:
-    """Which recording, what fails in it, and where the smallest goes."""
+    """Options of `shrink`: the recording, what fails in it, and where the smallest goes."""
 
     file: str = argument(str, "FILE", "a recording, also one that is cut off")
     check: str | None = option(str, metavar="NAME", help="this check of the level fails")

@@ -68,7 +68,7 @@ class History:
         self.index += 1
 
     def end_merge(self) -> None:
-        """Let the next step be a step of its own, as when a drag has ended."""
+        """End the run of edits that count as one step, as when a drag has ended."""
         self._steps[self.index] = self._steps[self.index]._replace(merge=None)
 
     def select(self, selection: Selection) -> None:

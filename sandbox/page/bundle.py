@@ -46,7 +46,7 @@ _ARRAYS = {
 
 
 class NoBundler(Exception):
-    """There is no node, or no esbuild; its text says how to get them."""
+    """Node or esbuild is missing; the text says how to get them."""
 
 
 def main() -> int:

@@ -118,7 +118,7 @@ new_tuple = ArenaLayout(new_slots, new_slot_rows, new_floats, new_float_rows, ne
 
 
 def lay_out(entry: Callable[..., Any], pointer: Any, arena: Arena, *arguments: Any) -> Arena:
-    """Let a kernel entry(pointer, arena, ...) lay out arrays for a bundle in an arena; return that, or a longer one."""
+    """Run a kernel entry(pointer, arena, ...) that lays out arrays for a bundle; the arena, or a longer one."""
     hold(pointer, arena)
     entry(pointer, arena, *arguments)
     while arena[0] > len(arena):

@@ -181,7 +181,7 @@ class _Gauge:
         self._still = dict(still)
 
     def look(self, world: World) -> None:
-        """Take in one tick."""
+        """Measure the world after a tick."""
         if self._follows_strain and world.tick > self._started:
             self._strains.append(strain_sample(world))
         for body, ticks in self._still.items():

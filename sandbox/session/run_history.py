@@ -140,7 +140,7 @@ class Keyframes:
             self._set(kept)
 
     def _thin(self) -> None:
-        """Let every other one go; of those between the commands of one tick first."""
+        """Drop every other keyframe; of those between the commands of one tick first."""
         first = next((place for place, kept in enumerate(self._kept) if kept.between), 1)
         if not self._kept[first].between:
             self._spacing *= 2

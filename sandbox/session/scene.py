@@ -243,7 +243,7 @@ class _SceneReading(RunReading):
     _tick: int = 0
 
     def add(self, line: SealedLine, number: int, where: str) -> None:
-        """Take in one line. Raises ReplayError where it does not fit there."""
+        """Read one line. Raises ReplayError where it does not fit there."""
         if not isinstance(line, (SealedCommand, StateLine, EndLine)):
             raise ReplayError(f"{where}: a scene has no line of this kind")
         if line.tick < self._tick:

@@ -196,7 +196,7 @@ class Session:
         return due
 
     def _note_written(self) -> None:
-        """Let a recording say what a program wrote into the world past the commands."""
+        """Write into a recording what a program has changed in the world past the commands."""
         if self._recorder is None:
             return
         written = self._record(self._recorder.note_written, self.world)

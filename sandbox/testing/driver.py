@@ -117,13 +117,13 @@ class Driver:
             self._do(Release(grab), gesture)
 
     def let_go(self) -> None:
-        """Let go of all that is held."""
+        """Release all that is held."""
         for grab in range(10):
             if self.session.world.is_held(grab):
                 self._do(Release(grab))
 
     def cut(self, *springs: str) -> None:
-        """Take springs out."""
+        """Cut springs."""
         self._do(CutSprings(springs))
 
     def drive(self, part: str, value: float) -> None:

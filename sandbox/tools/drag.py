@@ -86,7 +86,7 @@ class DragTool(Tool):
         return clicked
 
     def cancel(self) -> Response:
-        """Let go of every particle."""
+        """Release every particle."""
         submissions = tuple(Submission(Release(hand), hold.gesture) for hand, hold in self.holds.items())
         self.holds.clear()
         self._dragged = self._carried = None

@@ -142,7 +142,7 @@ class PullTool(PlacedTool):
         return Response(tuple(Submission(command, gesture) for command in self._make((start, end), snapshot)))
 
     def reconcile(self, snapshot: Snapshot) -> None:
-        """Let the start go with what it is tied to; nothing is pulled where that is gone."""
+        """Move the start with the thing it is tied to; nothing is pulled where that is gone."""
         particle = None if self._start is None else self._start.particle
         if particle is None:
             return

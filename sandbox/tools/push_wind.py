@@ -89,7 +89,7 @@ class PushTool(Sized, PlacedTool):
 
 
 class WindTool(PlacedTool):
-    """Let the wind blow along a drag while it is held; strength [1/s]: its speed for each metre of the drag."""
+    """Blows wind along a drag while it is held; strength [1/s]: its speed for each metre of the drag."""
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
         super().__init__(new_gesture)

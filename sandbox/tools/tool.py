@@ -101,7 +101,7 @@ class Tool(ABC):
         """Forget what the world no longer has; called when all commands handed out so far have been applied."""
 
     def take_up(self, size: float, height: float) -> None:  # noqa: B027
-        """Begin to be in use. size [m]: a usual size for the view; height [m]: of the view."""
+        """Prepare for use. size [m]: a usual size for the view; height [m]: of the view."""
 
     @property
     def size_to_share(self) -> float | None:
@@ -113,7 +113,7 @@ class Tool(ABC):
         return False
 
     def hover(self, place: Point | None) -> None:
-        """Know where the pointer is [m] before a press; None: it is over no world."""
+        """Note the place of the pointer [m] before a press; None: it is over no world."""
         self.place = place
 
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:

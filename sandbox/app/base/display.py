@@ -122,7 +122,7 @@ class Display:
         return width, height
 
     def settle(self) -> None:
-        """Take note of where the window came to stand."""
+        """Note the window's place after it was opened."""
         self._first = self.window.position
 
     @property

@@ -232,7 +232,7 @@ _own: dict[str, tuple[str, ...]] = {}
 
 
 def use_keys(own: Mapping[str, tuple[str, ...]]) -> list[str]:
-    """Let entries have a person's own keys, by their names; gives those keys that there are not."""
+    """Replace the keys of entries by a person's own, by their names; the keys among them that do not exist."""
     unknown = [text for keys in own.values() for text in keys if not _is_known(text)]
     _own.clear()
     _own.update({name: tuple(text for text in keys if _is_known(text)) for name, keys in own.items()})

@@ -82,7 +82,7 @@ class CompareScreen(PlayScreen):
         return playback
 
     def _join_stages(self) -> None:
-        """Let both stages have the same tools and views."""
+        """Share tools and views between both stages."""
         assert self.beside is not None
         self.beside.share_tools(self.stage)
 
@@ -155,7 +155,7 @@ class CompareScreen(PlayScreen):
         self.say(f"A and B go by one clock. Leave the comparison (F9) to play at {typed} ticks a second.")
 
     def choose_side(self, side: str) -> None:
-        """Let the panel show and set that run's springs and solver."""
+        """Show and set in the panel the springs and solver of that run."""
         self.side = side
         self._app.rebuild()
 
@@ -221,7 +221,7 @@ class CompareScreen(PlayScreen):
         return super().rests and self.beside is not None and self.beside.rests
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
-        """Let the same time pass in both."""
+        """Advance both runs by the same time."""
         assert self.beside is not None
         super().update(frame_time, None if pointer is None else self._in_first(pointer), profile)
         with profile.part("ticks"):

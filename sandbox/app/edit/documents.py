@@ -318,7 +318,7 @@ class DocumentActions:
             self._autosave.clear()
 
     def close(self) -> None:
-        """Let the file go; what was not given up stays in the autosave and is offered at the next start."""
+        """Close the file; edits that were not given up stay in the autosave and are offered at the next start."""
         if self.editor is not None:
             self.editor.level_file.close()
         if self._autosave is not None:
@@ -335,7 +335,7 @@ class DocumentActions:
                 self.app.say(fault)
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
-        """Let the autosave keep the document as it is now."""
+        """Keep the present document in the autosave."""
         if self._autosave is not None:
             self._autosave.note(level, path, label)
 

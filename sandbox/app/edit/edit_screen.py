@@ -171,7 +171,7 @@ class EditScreen:
             self.say(f"{names} went too: what {'it names' if one else 'they name'} is gone. Undo brings it back.")
 
     def level_changed(self, label: str, before: object) -> None:
-        """Let the autosave keep the level, where it is another than before."""
+        """Note the level in the autosave, where it has changed."""
         if self.document.level is not before:
             self.app.documents.note(self.document.level, self.level_file.path, label)
 
@@ -188,7 +188,7 @@ class EditScreen:
         self.history.select(selection)
 
     def end_merge(self) -> None:
-        """Let the next edit be a step of its own."""
+        """End the run of edits that count as one step."""
         self.history.end_merge()
 
     def say(self, text: str) -> None:
@@ -359,7 +359,7 @@ class EditScreen:
         return self._picking or self.pointer_tools[self.tool]
 
     def pick(self, kind: Pick, then: Callable[[Any], object]) -> None:
-        """Let a particle, a body or a box be picked on the sheet, and hand it on."""
+        """Start picking a particle, a body or a box on the sheet; the picked one is handed on."""
         self.settle()
         self._picking = PickTool(self, kind, then)
 
@@ -440,7 +440,7 @@ class EditScreen:
             self._picking = None
 
     def press_key(self, key: int, modifiers: int) -> bool:
-        """Let no key through: keys of a level work only while it is played."""
+        """Ignore keys: keys of a level work only while it is played."""
         return False
 
     def release_key(self, key: int) -> None:
@@ -453,7 +453,7 @@ class EditScreen:
 
     @property
     def takes_rest(self) -> bool:
-        """Never: a press selects or draws at once."""
+        """False: a press selects or draws at once."""
         return False
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:

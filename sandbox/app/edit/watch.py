@@ -55,7 +55,7 @@ class Watch:
         self._is_wanted = self._was_shown = False
 
     def begin_at_rest(self) -> None:
-        """Let the level begin as it will hang: at once where that is known, else once it is."""
+        """Start the level as it will hang: at once where that is known, else once it is."""
         if not self._screen.scene.items:
             self._screen.say("There is nothing on the sheet yet.")
             return
@@ -67,7 +67,7 @@ class Watch:
             self._screen.say("Calculating the rest position; the level will begin there.")
 
     def _take_forecast(self) -> None:
-        """Let everything begin where the forecast says it will hang, once that is known and wanted."""
+        """Start everything where the forecast says it will hang, once that is known and wanted."""
         forecast, screen = self.forecast, self._screen
         if not self._is_wanted or forecast is None or forecast.at_rest is None:
             return

@@ -7,7 +7,7 @@ Size = tuple[int, int]
 
 
 class Missing(Exception):
-    """Something that has to be installed first; said in a line."""
+    """A package that has to be installed first; said in a line."""
 
 
 @dataclass(frozen=True)

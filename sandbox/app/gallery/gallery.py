@@ -357,7 +357,7 @@ class Gallery:
         self.area.scroll_to(0.0)
 
     def _play(self, frame_time: float) -> None:
-        """Let the level play that is pointed at."""
+        """Play the level under the pointer in its card."""
         pointed = [card for card in self._shown() if card.is_pointed_at]
         card = next((card for card in pointed if card.hovered), pointed[0] if pointed else None)
         if self._preview is not None and self._preview[0] is not card:

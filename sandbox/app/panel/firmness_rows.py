@@ -54,7 +54,7 @@ class FirmnessRows(SoftnessReading):
         self._answered: set[str] = set()
 
     def offer_bodies(self) -> None:
-        """Let the menu offer what there is at the moment: bodies join a run, and go again."""
+        """Offer the present bodies in the menu: bodies join a run, and go again."""
         self._find_bodies()
         if self.shown:
             self.menu.offer([ALL_BODIES, *self.bodies], self.body)

@@ -375,7 +375,7 @@ class Panel(PropertyOwner):
         return command is not None
 
     def end_merge(self) -> None:
-        """Let the next change be a gesture of its own."""
+        """End the run of changes that count as one gesture."""
         self._gesture = None
 
     def say(self, text: str) -> None:

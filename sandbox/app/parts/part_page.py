@@ -83,7 +83,7 @@ class DropTarget(Protocol):
         ...
 
     def drop(self, pixel: Pixel) -> None:
-        """Let the part go at a pixel."""
+        """Drop the part at a pixel."""
         ...
 
 
@@ -296,7 +296,7 @@ class PartPage:
     # What the cards ask.
 
     def take(self, part: PartFile, by_key: bool) -> None:
-        """Have a part in hand, and close the page; not where it cannot join."""
+        """Take a part in hand, and close the page; not where it cannot join."""
         if part.level is not None and not refusal(part, self._world):
             self.sheet.remove()
             self._take(part.level, by_key)

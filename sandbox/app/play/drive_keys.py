@@ -99,7 +99,7 @@ class DriveKeys:
             self._controlled[control], self.is_on_pad = key, True
 
     def release_control(self, control: str) -> None:
-        """Let go the key that a control of a gamepad has pressed."""
+        """Release the key that a control of a gamepad has pressed."""
         key = self._controlled.pop(control, None)
         if key is not None:
             self.release(key)

@@ -85,7 +85,7 @@ class Game:
         return self._stage().playback
 
     def begin(self) -> None:
-        """Be about the run that is on the stage now."""
+        """Start the game of the run that is on the stage now."""
         self.close()
         if self._ended_at is not None:
             # It was its end that let the run before pause.
@@ -166,7 +166,7 @@ class Game:
         return True
 
     def keep_watching(self) -> bool:
-        """Take the card away and let the run go on; whether there was a card."""
+        """Close the card and let the run go on; whether there was a card."""
         if self.card is None:
             return False
         self._let_go_on()

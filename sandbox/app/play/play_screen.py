@@ -332,7 +332,7 @@ class PlayScreen:
         self.part_page = PartPage(self._ui, world, self._take_part, self._open_catalogue, offset, self.stage.part)
 
     def _take_part(self, part: Level, by_key: bool) -> None:
-        """Have a part in hand; by a key: where the arrows move it."""
+        """Take a part in hand; by a key: where the arrows move it."""
         self.stage.take_part(part)
         if by_key:
             self._ui.blur()
@@ -364,7 +364,7 @@ class PlayScreen:
             self.camera.turn_wheel(pixel, steps)
 
     def choose_strength(self, name: str) -> None:
-        """Let the hand be gentle, normal or strong from its next hold on, in later runs too."""
+        """Set the hand's strength, gentle, normal or strong, from its next hold on, in later runs too."""
         self.stage.drag.strength = name
         keep_strength(name)
         if self.stage.drag.holds:
@@ -413,7 +413,7 @@ class PlayScreen:
         self._follow_run()
 
     def _follow_run(self) -> None:
-        """Let problems, replay bar, kept runs and panel be about the run that is shown now."""
+        """Show the present run in problems, replay bar, kept runs and panel."""
         self.problems.begin()
         self.game.begin()
         self._app.show_replay_progress(self.playback, self.can_cancel)

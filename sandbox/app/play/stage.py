@@ -102,7 +102,7 @@ class Stage:
         return tool
 
     def take_part(self, part: Level) -> None:
-        """Have a part of the catalogue in hand."""
+        """Take a part of the catalogue in hand."""
         self.part = part
         self.tools[CATALOGUE] = self._catalogue_tool(part)
         self.choose_tool(CATALOGUE)
@@ -135,7 +135,7 @@ class Stage:
         self.following.begin(next(of_it, None))
 
     def follow_with_camera(self, picked: int | None) -> str:
-        """Let the camera follow what is held, pointed at, picked or driven, or stand; gives a line that says so."""
+        """Follow with the camera what is held, pointed at, picked or driven, or stop; gives a line that says so."""
         if self.following.particle is not None:
             self.following.begin(None)
             return "The camera stands still."
@@ -227,7 +227,7 @@ class Stage:
         self.renderer.overlays.shown ^= {name}
 
     def let_go(self) -> None:
-        """Let go all that tools hold, and give up what they are at."""
+        """Release all that tools hold, and cancel their gestures."""
         for tool in self.tools.values():
             self.playback.respond(tool.cancel())
         self.tool_name = HAND_TOOL
@@ -293,7 +293,7 @@ class Stage:
         self._cursor_to(self.camera.to_pixels((x, y)), 0)
 
     def _go_along(self) -> None:
-        """Let the keyboard cursor be where its particle is, unless it holds something."""
+        """Move the keyboard cursor with its particle, unless it holds something."""
         if self._marked is not None and self._marked not in self._visited:
             self._marked = None
         if self._marked is not None and self.cursor is not None and not self.pressed_by_key:

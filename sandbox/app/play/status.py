@@ -88,7 +88,7 @@ class StatusLine:
         return list(self.notices)[-1 if self._one_by_one else 0 :]
 
     def update(self, frame_time: float) -> None:
-        """Let notices age by frame_time [s]."""
+        """Age the notices by frame_time [s]."""
         for notice in self._ageing:
             notice.left -= frame_time
             if notice.left <= 0.0:

@@ -290,14 +290,14 @@ class TimeTrack(Widget):
             self.travel.set_span(self._span_from, tick)
 
     def on_release(self, at: Pixel) -> None:
-        """Let the knob go: the run stays at its tick."""
+        """Release the knob: the run stays at its tick."""
         if self._held:
             self._hold(False)
         self._held, self._span_from = False, None
         self.on_hover()
 
     def on_move(self, at: Pixel) -> None:
-        """Take note of the tick under the mouse, of which the label tells."""
+        """Note the tick under the mouse, which the label shows."""
         self.pointed = self._tick_at(at)
 
     def on_hover(self) -> None:

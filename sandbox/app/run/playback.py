@@ -217,7 +217,7 @@ class Playback:
         self.clock.paused = not self.clock.paused
 
     def _end_what_goes_on(self, gesture: int) -> None:
-        """Let go what hands hold and stop what is driven by commands that are not followed any further."""
+        """Release hands and stop drives whose commands are not followed any further."""
         for ending in self.session.going():
             self.session.submit(ending, gesture)
 
@@ -379,7 +379,7 @@ class Playback:
         return done
 
     def _make_room(self) -> None:
-        """Let a frame do one part of what joining takes: adding and drawing it again, what its ticks need, a tick."""
+        """Do one part a frame of what joining takes: adding and drawing bodies, what their ticks need, a tick."""
         self._making_room -= 1
         if self._making_room == 0:
             precompute(self.session.world)
@@ -471,7 +471,7 @@ class Playback:
         self._taken_over = True
 
     def _stop_short(self) -> None:
-        """Something is not undone, or made again: what a replay holds is not followed any further then."""
+        """Follow a replay no further, as an undo or redo was given up."""
         # What was submitted after it still waits.
         self._submitted = True
         if self.watching:

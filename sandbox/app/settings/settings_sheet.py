@@ -206,7 +206,7 @@ class KeyRow(Pressable):
         self._listen(False)
 
     def press_key(self, event: pygame.event.Event) -> bool:
-        """Take the keys that are pressed; Escape leaves them as they are."""
+        """Take the pressed keys; Escape leaves the old ones."""
         if not self.takes_all_keys:
             return super().press_key(event)
         if event.key == pygame.K_ESCAPE and self.entry.keys != ("Escape",):

@@ -196,7 +196,7 @@ class MovieWriter:
             raise self._refusal() from None
 
     def is_closed(self) -> bool:
-        """Let the encoder end; whether the file is whole."""
+        """Close the encoder's input; whether the file is whole by now."""
         assert self._ffmpeg.stdin is not None
         if not self._ffmpeg.stdin.closed:
             try:

@@ -150,7 +150,7 @@ class Sharing:
             set_preference(NAMED, self.choices.named)
 
     def choose_liveliest(self) -> None:
-        """Take the seconds in which the most moved."""
+        """Choose the seconds in which the most moved."""
         film, play = self.film, self._app.play
         if film is None or play is None:
             return

@@ -170,7 +170,7 @@ class Sounds:
         self._ahead: list[Note] = []
 
     def update(self, run: SoundingRun | None, is_heard: bool) -> None:
-        """Let what happened in a frame be heard.
+        """Play the sounds of what happened in a frame.
 
         run: that on the screen; is_heard: nothing lies over it, and time passes in it.
         """
@@ -195,7 +195,7 @@ class Sounds:
             self.voices.hum([cue_of(each, camera) for each in self._ear.motors(world)], now)
 
     def signal(self, kind: str, step: int = 0, after: float = 0.0) -> None:
-        """Let a signal be heard, in the middle and as loud as it is, so long [s] after this frame; see `signals`."""
+        """Play a signal, in the middle and as loud as it is, so long [s] after this frame; see `signals`."""
         self._signals.append((self._clock() + after, Note(kind, step)))
 
     def _play_signals(self, now: float) -> None:

@@ -124,7 +124,7 @@ class Voices:
         return began
 
     def hum(self, cues: Sequence[Cue], now: float) -> None:
-        """Let the motors that are wanted run, the loudest first, and no others."""
+        """Run the hum of these motors, the loudest first, and of no others."""
         loudest = {each.source: each for each in sorted(cues, key=lambda one: -one.loudness)[:MOTORS]}
         for source in [source for source in self._hums if source not in loudest]:
             self._let_go(self._hums.pop(source), now)
@@ -190,7 +190,7 @@ class Voices:
         return free[0] if free else None
 
     def _make_room(self, now: float) -> None:
-        """Let the quietest voices fade until some are free for what comes next."""
+        """Fade the quietest voices until some are free for what comes next."""
         while self._voices and len(self._used()) > VOICES - SPARE and not len(self._fading) >= SPARE:
             quietest = min(self._voices, key=lambda voice: voice.level(now))
             self._voices.remove(quietest)
@@ -249,7 +249,7 @@ class Mixdown:
             self._playing[channel].gains = np.array(gains)
 
     def fade(self, channel: int, seconds: float) -> None:
-        """Let a channel fall silent within a time [s]."""
+        """Fade a channel out within a time [s]."""
         if channel in self._playing:
             self._playing[channel].slope = -1.0 / (seconds * RATE)
 

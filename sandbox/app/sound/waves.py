@@ -132,7 +132,7 @@ def pluck(step: int) -> Wave:
 
 
 def snap(step: int) -> Wave:
-    """Something that breaks: three cracks close to each other, and a short tone that falls."""
+    """A break: three cracks close to each other, and a short tone that falls."""
     t, pitch = seconds(0.2), pitch_of(step)
     rng = np.random.default_rng(step)
     wave = 0.5 * np.exp(-t / 0.018) * np.sin(turns(pitch * (1.0 + 1.5 * np.exp(-t / 0.012))))
@@ -144,7 +144,7 @@ def snap(step: int) -> Wave:
 
 
 def splash(step: int) -> Wave:
-    """Something that falls into water: a hiss that swells and dies down, and bubbles that ring ever higher."""
+    """A splash into water: a hiss that swells and dies down, and bubbles that ring ever higher."""
     t, pitch = seconds(0.5), pitch_of(step)
     rng = np.random.default_rng(step)
     rise = np.minimum(t / 0.02, 1.0)
@@ -157,7 +157,7 @@ def splash(step: int) -> Wave:
 
 
 def squeak(step: int) -> Wave:
-    """Something that rubs: a reedy tone that slides upward and trembles."""
+    """A squeak of rubbing: a reedy tone that slides upward and trembles."""
     t, pitch = seconds(0.2), pitch_of(step)
     slide = pitch * (1.0 + 0.22 * np.sin(np.pi * t / 0.2) + 0.02 * np.sin(2.0 * np.pi * 38.0 * t))
     angle = turns(slide)

@@ -135,7 +135,7 @@ class Toy:
         self._words_left -= seconds
 
     def _tick(self, seconds: float) -> None:
-        """Let time pass, a shake before each tick that the frame accelerates in."""
+        """Make the ticks of a frame, with a shake before each in which the window accelerates."""
         clock, rate = self.playback.clock, self.playback.session.world.settings.tick_rate
         due = int((clock.accumulator + min(seconds, LONGEST_FRAME)) * rate)
         for _ in range(due - 1):
@@ -409,7 +409,7 @@ class SleepTimer:
         return self._rested >= DROWSY and self._idle >= (WATCHED if self._hovered else DROWSY)
 
     def disturb(self) -> None:
-        """Somebody does something."""
+        """Note that a person has done something."""
         self._idle = 0.0
 
     def follow(self, now: Snapshot, zoom: float, seconds: float, hovered: bool, rested: float) -> None:

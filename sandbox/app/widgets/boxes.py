@@ -108,7 +108,7 @@ class KeyBox(Pressable):
         self._listen(True)
 
     def press_key(self, event: pygame.event.Event) -> bool:
-        """Take the key."""
+        """Take the pressed key as the box's value."""
         if not self.listening:
             return super().press_key(event)
         if event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):

@@ -310,7 +310,7 @@ class Field(Widget):
         return min(range(len(self.typed) + 1), key=lambda at: abs(self._x_of(at) - target))
 
     def pass_time(self, seconds: float) -> None:
-        """Let the caret blink."""
+        """Blink the caret."""
         before, self._age = self._age, self._age + seconds
         if before // BLINK != self._age // BLINK:
             self.repaint()

@@ -79,7 +79,7 @@ class ScrollBar(Widget):
             self._scrolled((at[1] - self.rect.top - self._grip) / room * (self.height - self.page))
 
     def on_release(self, at: Pixel) -> None:
-        """Let the thumb go."""
+        """Release the thumb."""
         self._grip = None
         self.repaint()
 

@@ -229,7 +229,7 @@ class Ui(WindowLayout):
         return [widget for widget in reversed(self._seen[self._top :]) if widget.seen.collidepoint(at)]
 
     def _point(self, at: Pixel) -> None:
-        """Take note of where the mouse is, and of what is under it."""
+        """Note the place of the mouse, and the widget under it."""
         self.pointer = at
         under = next((widget for widget in self._under(at) if widget.image is not None), None)
         before, self.under = self.under, under
@@ -253,7 +253,7 @@ class Ui(WindowLayout):
         return isinstance(self.focus, Field)
 
     def process(self, event: pygame.event.Event) -> bool:
-        """Let the widgets have an event; True where they use it."""
+        """Hand an event to the widgets; True where they use it."""
         if event.type == pygame.MOUSEMOTION:
             return self._move(self._scaled(event.pos))
         if event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
@@ -408,7 +408,7 @@ class Ui(WindowLayout):
     # Frames.
 
     def update(self, frame_time: float) -> None:
-        """Let the widgets move on by frame_time [s]."""
+        """Update the widgets by frame_time [s]."""
         self._show_focus()
         at = self._scaled(pygame.mouse.get_pos())
         if at != self.pointer or not self.is_laid:

@@ -102,7 +102,7 @@ class Widget:
         return None
 
     def repaint(self) -> None:
-        """Let the widget be painted anew, once it is seen."""
+        """Paint the widget anew, once it is seen."""
         self._is_stale = True
 
     @property

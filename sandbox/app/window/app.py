@@ -133,11 +133,11 @@ class App:
         self.status.say(text, screen)
 
     def take_back(self, text: str) -> None:
-        """Take away a line that no longer holds."""
+        """Remove a line that no longer holds."""
         self.status.take_back(text)
 
     def end_messages(self, screen: Screen) -> None:
-        """Take away all lines about a screen."""
+        """Remove all lines about a screen."""
         self.status.end_with(screen)
 
     def offer_tour(self) -> None:
@@ -305,14 +305,14 @@ class App:
     # What the person has chosen.
 
     def _take_up(self) -> None:
-        """Let the app follow all settings as they are."""
+        """Apply all settings as they are."""
         self.scale = self.chosen["scale"] or self.chosen.automatic["scale"]
         show_theme(theme_of(self.chosen["theme"]))
         for keys in use_keys(self.chosen.keys):
             self.chosen.faults.append(f"preferences.json: keys: there is no key {keys!r:.40}.")
 
     def _obey(self, name: str) -> None:
-        """Let the app follow a setting that the person has changed."""
+        """Apply a setting that the person has changed."""
         self._take_up()
         if name == "sound" and not self.sounds.device.is_open:
             self.sounds.look_again()

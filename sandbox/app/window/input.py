@@ -150,7 +150,7 @@ class Input:
                 self.app.screen.turn_wheel(pixel, event.precise_y or event.y)
 
     def _to_controls(self, changes: list[tuple[str, bool]]) -> None:
-        """Let controls of gamepads press the keys of the level that is played, and let them go."""
+        """Press and release keys of the played level by controls of gamepads."""
         play = self.app.play
         for control, is_down in changes:
             if play is None:
@@ -214,7 +214,7 @@ class Input:
             screen.open_menu(pixel)
 
     def _rest_finger(self) -> None:
-        """Let a finger that rests on the world open a menu, in place of what it presses."""
+        """Open a menu by a finger that rests on the world, in place of what it presses."""
         screen = self.app.screen
         if self._finger is None or screen is None or not self._pressed:
             return

@@ -110,7 +110,7 @@ def flag(help: str) -> bool:
 
 
 def declare(parser: argparse.ArgumentParser, options: type[Any]) -> None:
-    """Tell a parser of all fields of a class of options."""
+    """Declare all fields of a class of options to a parser."""
     groups: dict[str | None, Any] = {None: parser}
     for each in fields(options):
         names, group, settings = (each.metadata[key] for key in ("names", "group", "given"))

@@ -12,7 +12,7 @@ EXIT_UNREAD = 141
 
 
 class Refused(Exception):
-    """Something that cannot be done as asked; faults: one line each."""
+    """A request that cannot be carried out; faults: one line each."""
 
     def __init__(self, *faults: str) -> None:
         super().__init__(*faults)

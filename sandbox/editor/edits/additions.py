@@ -136,7 +136,7 @@ def muscles(document: Document) -> list[Item]:
 
 
 def wave_along(document: Document, start: Point, end: Point, waves: float = 1.0) -> Document:
-    """Let muscles swing later the farther they lie on the way from start to end [m]: this many waves along it.
+    """Swing muscles the later the farther they lie on the way from start to end [m]: this many waves along it.
 
     The wave runs from start to end; what lies beside is measured along the way. Raises EditError.
     """
@@ -156,7 +156,7 @@ def wave_along(document: Document, start: Point, end: Point, waves: float = 1.0)
 
 
 def wave_in_order(document: Document, waves: float = 1.0) -> Document:
-    """Let muscles swing one after another in their order, this many waves once round. Raises EditError."""
+    """Swing muscles one after another in their order, this many waves once round. Raises EditError."""
     found = muscles(document)
     places = {item: index / len(found) for index, item in enumerate(found)}
     return _with_phases(document, places.__getitem__, waves)

@@ -111,7 +111,7 @@ def keep_settings(document: Document, world: World) -> Document:
 
 
 def keep_pose(document: Document, world: World) -> Document:
-    """Let everything start where it is in the played world; all rest lengths stay. Raises EditError."""
+    """Start everything where it is in the played world; all rest lengths stay. Raises EditError."""
     scene = make_scene(document.level)
     slots = _slots(scene, world)
     now = world.position[slots]
@@ -121,7 +121,7 @@ def keep_pose(document: Document, world: World) -> Document:
 
 
 def begin_at_rest(document: Document, position: Points, falling: Selection = frozenset()) -> Document:
-    """Let everything start where a forecast has it, and at rest; all rest lengths stay. Raises EditError.
+    """Start everything where a forecast has it, and at rest; all rest lengths stay. Raises EditError.
 
     position [m] (n, 2): by the particles of the level's Scene. falling: items that stay as they are.
     """

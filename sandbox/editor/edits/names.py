@@ -107,7 +107,7 @@ def _with_companion(level: Level, change: Rewire) -> Level:
 
 
 class _GoneError(Exception):
-    """Something that a rule names is gone."""
+    """A rule names something that is gone."""
 
 
 def _same(name: str) -> str:

@@ -207,7 +207,7 @@ def _add_hold(document: Document, index: int) -> Document:
 
 
 def _set_held_key(index: int, number: int, document: Document, value: Any) -> Document:
-    """Let a check hold another key, or none."""
+    """Set the key that a check holds, or none."""
     holds = list(document.level.checks[index].hold)
     holds[number : number + 1] = [] if value is None else [replaced(holds[number], key=value)]
     return _changed(document, index, hold=tuple(holds))

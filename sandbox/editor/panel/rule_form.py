@@ -235,7 +235,7 @@ def _set_metric(index: int, document: Document, value: Any) -> Document:
 
 
 def _set_asked(index: int, document: Document, value: Any) -> Document:
-    """Let a rule ask something else, of the same things where it can be."""
+    """Set the question of a rule, of the same things where it can be."""
     return _asking(index, document, lambda level, when: _question(level, value, when, "y"))
 
 
@@ -377,7 +377,7 @@ def _set_action(document: Document, index: int, number: int, action: _Data) -> D
 
 
 def _softened(document: Document, index: int, number: int) -> Document:
-    """Let an action make soft the first body that can be."""
+    """Set an action to soften the first body that can be."""
     for body in document.level.bodies:
         try:
             return _set_action(document, index, number, {"sag": SOFT, "body": body.id})

@@ -320,7 +320,7 @@ def rename_part(part: PartFile, name: str) -> Path:
 
 
 def delete_part(part: PartFile) -> None:
-    """Take the file of an own part away. Raises StorageError."""
+    """Delete the file of an own part. Raises StorageError."""
     assert part.is_own
     try:
         part.path.unlink(missing_ok=True)

@@ -77,7 +77,7 @@ def known_material(document: Document, name: str) -> str:
 
 
 def firm(document: Document, sag: float) -> Document:
-    """Let the body that was added last sag by that part of its height, or by the nearest that it can.
+    """Give the body added last that sag, or the nearest that it can have.
 
     Where its form is not stiff without pins, or its springs are of another law, it stays as it is.
     """
@@ -125,7 +125,7 @@ def length(points: list[Snap]) -> float:
 
 
 class LineDrawing(BodyDrawing[AnyLineOptions], Generic[AnyLineOptions]):
-    """A body from a start to an end, held where it should be and joins nothing."""
+    """Draws a body from a start to an end; its pinned ends join nothing."""
 
     counted = "segments"
     parts = "cells"

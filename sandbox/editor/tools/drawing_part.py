@@ -12,7 +12,7 @@ from sandbox.level.document.model import Level
 
 @dataclass(frozen=True)
 class PartOptions(Options):
-    """Which part, None = none yet, and which way round."""
+    """Options of a part: which, None = none yet, and which way round."""
 
     part: Level | None = field(default=None)
     mirrored: bool = flag_option(False, "mirrored", "Mirrored, so that a car faces the other way.")
@@ -38,7 +38,7 @@ class PartDrawing(Drawing[PartOptions]):
         return "Add a part" if self.options.part is None else f"Add {self.options.part.name}"
 
     def take(self, part: Level) -> None:
-        """Have another part in hand."""
+        """Take another part in hand."""
         self.cancel()
         self.options = replace(self.options, part=part)
 

@@ -94,7 +94,7 @@ class WallsDrawing(Drawing[SurfaceOptions]):
     end_hint = "Click or release at the opposite corner"
 
     def joins(self, index: int) -> bool:
-        """Never: walls join nothing."""
+        """False: walls join nothing."""
         return False
 
     def placed(self, document: Document, points: list[Snap]) -> Document:

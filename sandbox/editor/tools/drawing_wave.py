@@ -39,7 +39,7 @@ class WaveDrawing(Drawing[WaveOptions]):
         return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:
-        """Never: a wave joins nothing."""
+        """False: a wave joins nothing."""
         return False
 
     def ghost(self, document: Document) -> Document | None:

@@ -86,7 +86,7 @@ def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
 
 
 def _free_wheels(level: Level, bits: dict[str, int], rows: list[list[Any]]) -> None:
-    """Let wheels pass through their mounts: each wheel gets a group of its own, which its mount does not touch.
+    """Give each wheel a collision group of its own, which its mount does not touch.
 
     rows: as in `surfaces_of`; group and collides are last.
     """

@@ -90,7 +90,7 @@ def grab(state: State, slots: Slots, numbers: Floats) -> None:
 
 @inner_kernel
 def release(state: State, slots: Slots) -> None:
-    """Let a hand go: slots = first cursor, first spring, hand."""
+    """Release a hand: slots = first cursor, first spring, hand."""
     # No bank keeps energy that the hand's work put into it. Not begun again: what overlaps where a hand lets go is no
     # start, at which parting costs nothing.
     hand, bank = slots[2], state.energy_bank

@@ -309,7 +309,7 @@ def _numbers(column: NumberColumn, values: Any) -> Floats:
 
 
 def join_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
-    """Let a packed kit join a world: rows, driven parts, limits and hulls, without names.
+    """Add a packed kit to a world: rows, driven parts, limits and hulls, without names.
 
     giver, kind: who adds it by which command. Raises KitError and RefusedCommand.
     """

@@ -177,7 +177,7 @@ def sort_by_solver(collisions: Collisions) -> None:
 
 @inner_kernel
 def separate_overlaps(state: State, start: FloatRows, collisions: Collisions) -> None:
-    """Let bodies come apart whose outlines overlap; start [m/s] (n, 2): velocities before anything acted."""
+    """Push overlapping bodies apart; start [m/s] (n, 2): velocities before anything acted."""
     if collisions.overlaps.counts[OVERLAPS] > 0:
         moved = MovedParticles(
             state.velocity, start, state.mass, state.inverse_mass, state.energy_bank, state.parting_reserve

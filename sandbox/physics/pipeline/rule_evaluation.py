@@ -61,7 +61,7 @@ def _holds_of_members(terms: Terms, t: int) -> bool:
 
 @inner_kernel
 def _find_touches(world: WorldBlock) -> None:
-    """Let terms of TOUCHES hold whose things push each other."""
+    """Set terms of TOUCHES to true whose things push each other."""
     terms, things, kept = world.rules.terms, world.rules.things, world.collisions.kept
     asking = 0
     while asking < terms.kind.shape[0] and terms.kind[asking] == TOUCHES:

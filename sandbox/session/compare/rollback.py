@@ -57,7 +57,7 @@ def roll_back(replay: Replay, back: int, level: Level | None = None, progress: P
 
 
 def roll_back_level(level: Level, back: int, seed: int = 0, progress: Progress | None = None) -> RolledBack:
-    """Let random hands play a level for 10 s, and go back at every tick."""
+    """Play a level with random hands for 10 s, and go back at every tick."""
     session = Session(level)
     ticks = round(HANDS_SECONDS * level.settings.tick_rate)
     return _rolled_back(session, ticks, back, RandomHands(session, seed).act, progress)

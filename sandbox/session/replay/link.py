@@ -205,7 +205,7 @@ class _Hands:
     gestures: dict[int, int] = field(default_factory=dict)
 
     def note(self, gesture: int, record: dict[str, Any]) -> None:
-        """Take a command into account that is no packed move."""
+        """Note a command that is no packed move."""
         if record.get("type") == "grab" and isinstance(record.get("grab"), int):
             self.gestures[record["grab"]] = gesture
 

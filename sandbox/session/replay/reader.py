@@ -235,7 +235,7 @@ class RunReading:
             yield number
 
     def add(self, line: SealedLine, number: int, where: str) -> None:
-        """Take in one line. Raises ReplayError where it does not fit there."""
+        """Read one line. Raises ReplayError where it does not fit there."""
         if isinstance(line, SealedCommand):
             self.script.append(ScriptLine(line.tick, line.gesture, line.command, number))
             self.slots += PARTICLE_LIMIT + SPRING_LIMIT if line.command.get("type") == "add_body" else 1
@@ -271,7 +271,7 @@ class _RecordingReading(RunReading):
     remedy: ClassVar[str] = "; record the run again"
 
     def add(self, line: SealedLine, number: int, where: str) -> None:
-        """Take in one line. Raises ReplayError where it does not fit there."""
+        """Read one line. Raises ReplayError where it does not fit there."""
         tick = len(self.hashes) - 1
         expected = tick + 1 if isinstance(line, TickLine) else tick
         if line.tick != expected:

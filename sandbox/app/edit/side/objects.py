@@ -263,7 +263,7 @@ class FindingsPage(SidePage):
         self._offer(finding.remedy)
 
     def _offer(self, remedy: Remedy | None) -> None:
-        """Let the button mend the chosen finding, where an edit can."""
+        """Offer on the button to mend the chosen finding, where an edit can."""
         self._remedy = remedy
         self.mend.show_text(NO_REMEDY if remedy is None else remedy.label)
         self.mend.is_enabled = remedy is not None
