@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 
 # What was done in a run: the tick, the gesture and the command of each, in order.
-Deeds = list[tuple[int, int, Command]]
+TimedCommands = list[tuple[int, int, Command]]
 
 # At rest is what moves by less than this part of the level's size within a window of this many seconds. Larger: a heavy
 # weight on a long rope stops above its place; smaller: a soft jelly takes minutes.
@@ -163,27 +163,27 @@ def _stop(world: World, chosen: NDArray[np.bool_]) -> None:
 class Firing:
     """A run in work, a slice at a time; times: when each rule fired [s], by its id; fault: why it went no further."""
 
-    def __init__(self, level: Level, deeds: Deeds, last_tick: int) -> None:
+    def __init__(self, level: Level, commands: TimedCommands, last_tick: int) -> None:
         self.level = level
         self.times: dict[str, list[float]] = {rule.id: [] for rule in level.rules}
         self.is_done = False
         self.fault = ""
-        self._work = self._run(deque(deeds), last_tick)
+        self._work = self._run(deque(commands), last_tick)
 
     def advance(self, seconds: float) -> bool:
         """Work for about that long, at least one tick; whether it is done."""
         self.is_done = work_for(self._work, seconds)
         return self.is_done
 
-    def _run(self, deeds: deque[tuple[int, int, Command]], last_tick: int) -> Iterator[None]:
+    def _run(self, commands: deque[tuple[int, int, Command]], last_tick: int) -> Iterator[None]:
         session = Session(self.level)
         rate, world = session.world.settings.tick_rate, session.world
         if len(world.position) > LARGEST:
             self.fault = "the level is too large to step the run again"
             return
         for _ in range(min(last_tick, round(LONGEST_RUN * rate))):
-            while deeds and deeds[0][0] <= session.tick:
-                _, gesture, command = deeds.popleft()
+            while commands and commands[0][0] <= session.tick:
+                _, gesture, command = commands.popleft()
                 session.submit(command, gesture)
             session.advance()
             for rule in np.flatnonzero(session.world.rule_last == session.tick).tolist():
@@ -191,7 +191,7 @@ class Firing:
             yield None
 
 
-def deeds_of(run: Session) -> tuple[Deeds, int]:
+def timed_commands(run: Session) -> tuple[TimedCommands, int]:
     """The commands that count in a run, and its last tick."""
     entries = [entry for entry in run.history.timeline if entry.in_effect and not entry.implied]
     return [(entry.tick, entry.gesture, entry.command) for entry in entries], run.last_tick

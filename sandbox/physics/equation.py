@@ -87,7 +87,7 @@ def explicit_spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) 
 
 
 def implicit_spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:
-    """k [N/m] of springs under the implicit form: Cs m_r / ((1 - Cd) h^2), with both capped as there."""
+    """k [N/m] of springs under the implicit form: Cs m_r / ((1 - Cd) h^2), Cs and Cd capped as in that form."""
     highest = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
     return highest * mass / ((1.0 - np.minimum(damping, HIGHEST_COEFFICIENT)) * h * h)  # (8)
 

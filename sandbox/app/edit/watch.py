@@ -10,7 +10,7 @@ from sandbox.app.contracts.application import Editing
 from sandbox.app.panel.softness_reading import MEASURING, SoftnessReading
 from sandbox.app.run.playback import Playback
 from sandbox.editor.edits.bake import begin_at_rest
-from sandbox.editor.forecast import Deeds, Firing, Forecast, Trail, deeds_of
+from sandbox.editor.forecast import Firing, Forecast, TimedCommands, Trail, timed_commands
 from sandbox.editor.lint.lint import Finding, findings
 from sandbox.editor.range_trial import RangeTrial
 from sandbox.level.document.model import Level
@@ -40,7 +40,7 @@ class Watch:
         self.last_trail: Trail | None = None
         # When the rules would have fired in the run before, with the level as it is now; what was done in that run.
         self.firing: Firing | None = None
-        self._deeds: tuple[Deeds, int] | None = None
+        self._commands: tuple[TimedCommands, int] | None = None
         # Values of a number that are tried.
         self.range_trial: RangeTrial | None = None
         # How soft play says that a body is; None: not asked for of the level as it is now, or it cannot be played.
@@ -143,7 +143,7 @@ class Watch:
 
     def remember(self, run: Session) -> None:
         """Show where things went in a run of the level, beside where they will go, and when its rules fired."""
-        self._deeds, self._level = deeds_of(run), None
+        self._commands, self._level = timed_commands(run), None
         if self.trails:
             self.last_trail = Trail(run.level, run.retold(0))
 
@@ -183,7 +183,7 @@ class Watch:
             self._is_told = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
             self.trail = Trail(level) if self.trails and self._screen.scene.items else None
-            self.firing = Firing(level, *self._deeds) if self._deeds is not None and level.rules else None
+            self.firing = Firing(level, *self._commands) if self._commands is not None and level.rules else None
         self._look()
         self._follow()
         if self.firing is not None and not self.firing.is_done:

@@ -35,7 +35,7 @@ class Travel:
         self.looping = False
         self.target: int | None = None
         # What the first commands of gestures did, by their orders.
-        self._deeds: dict[int, str] = {}
+        self._actions: dict[int, str] = {}
 
     def length(self, watching: bool) -> int:
         """The last tick that the time bar can reach; watching: whether the replay is followed to its end."""
@@ -60,7 +60,7 @@ class Travel:
     def marks(self) -> list[Mark]:
         """Marks of commands, breaks, goals, bookmarks and branches, in the order of their ticks."""
         session = self._session
-        commands = [Mark(entry.tick, "command", self._deed(entry)) for entry in session.gestures]
+        commands = [Mark(entry.tick, "command", self._action(entry)) for entry in session.gestures]
         breaks = []
         events = list(tick_events_of(session, session.last_tick))
         for tick, those in itertools.groupby((each for each in events if each.kind == "break"), lambda each: each.tick):
@@ -73,12 +73,12 @@ class Travel:
         branches = [Mark(branch.tick, "branch", "the run was changed there") for branch in session.branches]
         return sorted([*commands, *breaks, *goals, *bookmarks, *branches], key=lambda mark: mark.tick)
 
-    def _deed(self, entry: LogEntry) -> str:
+    def _action(self, entry: LogEntry) -> str:
         """The effect of a command, in words."""
-        if entry.order not in self._deeds:
+        if entry.order not in self._actions:
             action = next(user_actions(script_of([entry], self._session.world)), None)
-            self._deeds[entry.order] = entry.command.type.replace("_", " ") if action is None else action.text
-        return self._deeds[entry.order]
+            self._actions[entry.order] = entry.command.type.replace("_", " ") if action is None else action.text
+        return self._actions[entry.order]
 
     def mark_beside(self, tick: int, by: int) -> Mark | None:
         """The first mark after a tick (by 1), or the last before it (by -1)."""

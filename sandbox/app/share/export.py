@@ -114,7 +114,7 @@ class Export:
         try:
             yield from self._write_playing(path)
         except CommandError:
-            yield from self._write_reel(path)
+            yield from self._write_player_page(path)
         # For the clipboard.
         for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
             self.picture = picture or self.picture
@@ -131,22 +131,22 @@ class Export:
         made = yield from playable_in_slices(film.level, film.script, max(end, begin + 1), begin)
         write_file(path, page_text(*made).encode())
 
-    def _write_reel(self, path: Path) -> Slices:
+    def _write_player_page(self, path: Path) -> Slices:
         from sandbox.session.player.page import PlaybackData, PlayerPage, steps_between
 
         film, excerpt, box = self.film, self.excerpt, np.array(self.film.box)
         ticks = max(1, round((excerpt.end - excerpt.start) * film.rate))
-        reels, count = [], len(film.parts)
+        sides, count = [], len(film.parts)
         for number, (words, part) in enumerate(film.parts):
-            reel, passed = PlaybackData(words or excerpt.name, film.level, box), 0
+            side, passed = PlaybackData(words or excerpt.name, film.level, box), 0
             for world in part.states(excerpt.start, excerpt.end):
                 if world is not None:
                     if passed % steps_between(ticks, world.particle_count, count) == 0:
-                        reel.add(world)
+                        side.add(world)
                     passed += 1
                 yield (number + passed / (ticks + 1)) / count
-            reels.append(reel)
-        PlayerPage(excerpt.name or self.path.stem, box, film.rate, reels).write(path)
+            sides.append(side)
+        PlayerPage(excerpt.name or self.path.stem, box, film.rate, sides).write(path)
 
     def _pictures(self, write: Callable[[pygame.Surface], object]) -> Slices:
         excerpt, done = self.excerpt, 0

@@ -261,7 +261,7 @@ def lost() -> Wave:
 
 
 def star(step: int) -> Wave:
-    """A star that is shown."""
+    """The sound of a star that is shown."""
     return finished(_note(pitch_of(step), 0.25, 1.0, (1.0, 0.15, 0.3)), 0.002)
 
 

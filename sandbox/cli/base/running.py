@@ -62,10 +62,10 @@ def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Re
     runs = [session]
     watches = watches_of(runs)
     with watching(ticks) as watched:
-        reels = played([name], runs, ticks, watched=watched, watches=watches)
-        page = PlayerPage(name, *reels, marks=command_marks(replay), happened=told_of(runs, watches))
+        content = played([name], runs, ticks, watched=watched, watches=watches)
+        page = PlayerPage(name, *content, marks=command_marks(replay), happened=told_of(runs, watches))
     page.write(path)
-    return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.reels[0].ticks)} pictures"
+    return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.sides[0].ticks)} pictures"
 
 
 def write_report(found: "Comparison", path: Path) -> None:

@@ -557,7 +557,7 @@ def new_colliders(terrain: Terrain, outline: Outline, pairs: int, arena: Arena) 
 
 @inner_kernel
 def _fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
-    """Fill in the vertices of terrain, and the groups of all vertices as those are."""
+    """Fill in the vertices of terrain, and the collision groups of all vertices."""
     particles = colliders.owner.shape[0] - terrain.vertex.shape[0]
     for v in range(colliders.owner.shape[0]):
         colliders.group[v] = TERRAIN_GROUP

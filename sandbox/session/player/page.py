@@ -132,7 +132,7 @@ class PlayerPage:
     title: str
     box: NDArray[np.float64]
     rate: int
-    reels: Sequence[PlaybackData]
+    sides: Sequence[PlaybackData]
     marks: Sequence[tuple[int, str]] = ()
     difference: tuple[int, int | None] | None = None
     lines: Sequence[str] = field(default=())
@@ -140,13 +140,13 @@ class PlayerPage:
 
     def text(self) -> str:
         """The page. Both sides have the ticks that both have."""
-        ticks = [tick for tick in self.reels[0].ticks if all(tick in set(reel.ticks) for reel in self.reels)]
+        ticks = [tick for tick in self.sides[0].ticks if all(tick in set(side.ticks) for side in self.sides)]
         data: dict[str, Any] = {
             "rate": self.rate,
             "box": [float(value) for value in self.box],
             "steps": STEPS,
             "ticks": ticks,
-            "sides": [{**reel.data(), "at": _places(reel.ticks, ticks)} for reel in self.reels],
+            "sides": [{**side.data(), "at": _places(side.ticks, ticks)} for side in self.sides],
             "marks": [[tick, words] for tick, words in self.marks],
             "first": None if self.difference is None else self.difference[0],
             "ring": None if self.difference is None else self.difference[1],
@@ -210,12 +210,12 @@ def told_states(run: Session, first: int, last: int) -> Iterator[LevelWorld]:
         yield current.world
 
 
-def gathered(reel: PlaybackData, states: Iterable[State], step: int, also: int | None = None) -> PlaybackData:
-    """A reel with every so manieth tick of these states, and with one more tick that must not be missed."""
+def gathered(side: PlaybackData, states: Iterable[State], step: int, also: int | None = None) -> PlaybackData:
+    """The side with every step-th tick of these states, and with one more tick that must not be missed."""
     for state in states:
         if state.tick % step == 0 or state.tick == also:
-            reel.add(state)
-    return reel
+            side.add(state)
+    return side
 
 
 def _terrain(state: State) -> list[Any]:
@@ -243,7 +243,7 @@ def played(
     watched: Watched = iter,
     watches: Sequence[TouchWatch] = (),
 ) -> Played:
-    """The box, the tick rate and the reels of runs that have not begun, or are where they part; they are advanced.
+    """The box, the tick rate and the sides of runs that have not begun, or are where they part; they are advanced.
 
     also: a tick that is not left out. watches: one for each run, that is told of its ticks.
     """
@@ -253,11 +253,11 @@ def played(
     states = [told_states(run, 0, ticks) for run in runs]
     if watches:
         states = [watch.following(each) for watch, each in zip(watches, states, strict=True)]
-    reels = [
+    sides = [
         gathered(PlaybackData(name, run.level, box), watched(each), step, also)
         for name, run, each in zip(names, runs, states, strict=True)
     ]
-    return box, level.settings.tick_rate, reels
+    return box, level.settings.tick_rate, sides
 
 
 def first_difference_shown(divergence: Divergence | None, run: Session) -> tuple[int, int | None] | None:

@@ -130,7 +130,7 @@ class Drawables:
 
     def _add_filled(self, actor: Actor, there: Mask) -> list[Join]:
         look, filling = actor.look, actor.filling(there, self._whole)
-        shapes, faces = actor.flesh(filling.key, lambda: self._skin(actor, filling.pieces))
+        shapes, faces = actor.cached(filling.key, lambda: self._skin(actor, filling.pieces))
         self._shapes += shapes
         self._faces += faces
         if look.skin == CLOTH or look.skin in CRATES:

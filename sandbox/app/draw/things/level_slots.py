@@ -129,7 +129,7 @@ class Actor:
     springs: Slots
     pairs: Slots
     _filling: Filling | None = field(default=None, init=False)
-    _flesh: tuple[bytes, Any] | None = field(default=None, init=False)
+    _cached: tuple[bytes, Any] | None = field(default=None, init=False)
     _spot: tuple[Floats, float] | None = field(default=None, init=False)
 
     @property
@@ -194,11 +194,11 @@ class Actor:
         loops = [self.slots[loop] for loop in trace_loops(members)]
         return Piece(members, loops, np.asarray(there & filled[self.pairs].all(axis=1)))
 
-    def flesh(self, key: bytes, make: Callable[[], Drawn]) -> Drawn:
+    def cached(self, key: bytes, make: Callable[[], Drawn]) -> Drawn:
         """The drawing that `make` makes of it, kept while the key of its filling stays the same."""
-        if self._flesh is None or self._flesh[0] != key:
-            self._flesh = key, make()
-        made: Drawn = self._flesh[1]
+        if self._cached is None or self._cached[0] != key:
+            self._cached = key, make()
+        made: Drawn = self._cached[1]
         return made
 
     def spot(self, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
