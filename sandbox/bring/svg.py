@@ -95,7 +95,7 @@ class _Reader:
         for element in root.iter():
             self._by_id.setdefault(element.get("id", ""), element)
         self._drawn = 0
-        self._told_servers: set[str] = set()
+        self._reported_servers: set[str] = set()
         self._copied: list[Element] = []
 
     def read(self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str) -> None:
@@ -195,8 +195,8 @@ class _Reader:
         server = named[1]
         found = self._by_id.get(server)
         kind = SERVERS.get(local_name(found), "paint") if found is not None else "paint that is not in the file"
-        if server not in self._told_servers:
-            self._told_servers.add(server)
+        if server not in self._reported_servers:
+            self._reported_servers.add(server)
             self.drawing.left_out.add(f"{kind} (its first colour came in)" if kind == "gradient" else kind)
         for _ in range(5):
             if found is None:

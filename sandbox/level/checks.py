@@ -201,7 +201,7 @@ def held_text(check: CheckDef) -> str:
     return ", ".join(f"{hold.key.upper()} from {hold.during[0]:g} to {hold.during[1]:g} s" for hold in check.hold)
 
 
-def wanted_text(check: CheckDef) -> str:
+def expected_text(check: CheckDef) -> str:
     """The bounds of a check."""
     low, high = bounds_of(check)
     parts = [f"at least {low:g}"] if low > -math.inf else []
@@ -214,7 +214,7 @@ def promise_text(check: CheckDef) -> str:
     words = PROMISES.get((check.metric, *bounds_of(check)), measured.words)
     return words.format(
         owner=owner or "everything", of="" if owner is None else f" of {owner}", other=check.other,
-        bounds=f"{wanted_text(check)} {measured.unit}".rstrip(),
+        bounds=f"{expected_text(check)} {measured.unit}".rstrip(),
     )  # fmt: skip
 
 
@@ -227,6 +227,6 @@ def judge(check: CheckDef, value: float, at: float | None = None) -> CheckResult
         measured = f"is at {'worst' if check.always else 'best'} {value:.6g}, after {when:g} s"
     text = (
         f"{check.name}: {'holds' if passed else 'FAILS'}: {subject_text(check)} {time_text(check)} {measured}, "
-        f"wanted {wanted_text(check)}"
+        f"wanted {expected_text(check)}"
     )
     return CheckResult(check, value, passed, text, when)

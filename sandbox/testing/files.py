@@ -45,7 +45,7 @@ def level_files(config: pytest.Config) -> frozenset[Path]:
     return config.stash[_LEVELS]
 
 
-def given_renames(config: pytest.Config) -> dict[str, str]:
+def asked_renames(config: pytest.Config) -> dict[str, str]:
     """The names that --replay-rename gives, old to new. Raises UsageError."""
     pairs = [pair.partition("=") for pair in config.getoption("--replay-rename")]
     for old, sign, new in pairs:

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 ELSEWHERE = "it lies where levels lie; if it is something else, keep it elsewhere, or name levels by sandbox_levels"
 
 
-class ToldItem(pytest.Item):
+class ReportedItem(pytest.Item):
     """A test whose failures are told in lines; mark: what all of its kind have."""
 
     mark = "level"
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(**given)
+    def __init__(self, **arguments: Any) -> None:
+        super().__init__(**arguments)
         for name in (self.mark, *marks_of(self.config, self.path)):
             self.add_marker(name)
 
@@ -45,7 +45,7 @@ class RecordingTest(pytest.File):
         yield ReplayItem.from_parent(self, name="replay")
 
 
-class ReplayItem(ToldItem):
+class ReplayItem(ReportedItem):
     """A recording runs again, bit for bit."""
 
     mark = "replay"
@@ -92,7 +92,7 @@ class LevelTests(pytest.File):
         return level_of(self.path)
 
 
-class LevelItem(ToldItem):
+class LevelItem(ReportedItem):
     """A level is read and built without a fault."""
 
     def runtest(self) -> None:
@@ -111,11 +111,11 @@ class LevelItem(ToldItem):
         check_rollback_of_level(self.config, level)
 
 
-class CheckItem(ToldItem):
+class CheckItem(ReportedItem):
     """A check of a level holds."""
 
-    def __init__(self, *, number: int, **given: Any) -> None:
-        super().__init__(**given)
+    def __init__(self, *, number: int, **arguments: Any) -> None:
+        super().__init__(**arguments)
         self.number = number
 
     def runtest(self) -> None:
@@ -126,7 +126,7 @@ class CheckItem(ToldItem):
             raise Failed(result.text)
 
 
-class GoalItem(ToldItem):
+class GoalItem(ReportedItem):
     """The test that the solution beside a level wins it."""
 
     def runtest(self) -> None:
@@ -149,7 +149,7 @@ class GoldenTest(pytest.File):
         yield GoldenItem.from_parent(self, name="golden")
 
 
-class GoldenItem(ToldItem):
+class GoldenItem(ReportedItem):
     """The test that a golden file's values come out again, within its tolerances."""
 
     mark = "golden"

@@ -13,7 +13,7 @@ import pytest
 
 from sandbox.session.replay import is_recording
 from sandbox.testing.evidence import CHOICES, FIRST, runs_of
-from sandbox.testing.files import USUAL_LEVELS, given_renames, is_golden, is_level, level_files, marked
+from sandbox.testing.files import USUAL_LEVELS, asked_renames, is_golden, is_level, level_files, marked
 from sandbox.testing.items import GoldenTest, LevelTests, RecordingTest
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def pytest_configure(config: pytest.Config) -> None:
     back = config.getoption("--replay-rollback")
     if back is not None and back < 1:
         raise pytest.UsageError(f"--replay-rollback: {back}: at least 1 tick")
-    given_renames(config)
+    asked_renames(config)
     level_files(config)
     marked(config)
 

@@ -29,7 +29,7 @@ from sandbox.session.replay.rerecord import (
     with_settings,
 )
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.files import Failed, given_renames, level_files
+from sandbox.testing.files import Failed, asked_renames, level_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -80,7 +80,7 @@ def replay_test(config: pytest.Config, path: Path) -> Update | None:
     except ReplayError as error:
         raise Failed(*error.faults) from None
     if golden.is_renamed:
-        raise _failed(config, golden, golden.renames_told()[0], found)
+        raise _failed(config, golden, golden.rename_lines()[0], found)
     if found is not None:
         raise _failed(config, golden, f"diverged: {found.cause()}", found)
     return None
@@ -114,7 +114,7 @@ class _Golden:
         found = compare(self.replay, level=self.level)
         return None if found is None else to_the_end(found)
 
-    def renames_told(self) -> list[str]:
+    def rename_lines(self) -> list[str]:
         """Lines that say which names have changed."""
         return [f"{self._level_name}: {old} is called {new} now" for old, new in self.renames.items()]
 
@@ -123,7 +123,7 @@ class _Golden:
         """The name in messages of the level that a recording runs on."""
         return (file_of(self.level) if self.level is not None else "") or "level"
 
-    def moves_told(self) -> list[str]:
+    def move_lines(self) -> list[str]:
         """Lines that say which title or file of the level has changed."""
         if self.level is None:
             return []
@@ -159,7 +159,7 @@ def _golden(config: pytest.Config, path: Path) -> _Golden:
     except OtherPhysicsError as error:
         refused, recorded = error.faults[0], read_replay(path, retold=True)
     level = level_against(config, recorded)
-    renames = {} if level is None else guessed_renames(recorded.level, level) | given_renames(config)
+    renames = {} if level is None else guessed_renames(recorded.level, level) | asked_renames(config)
     return _Golden(path, recorded, carried_over(recorded, renames), level, renames, refused)
 
 
@@ -167,7 +167,7 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     """A failure that says what was edited, how far the runs come apart, and how to accept it."""
     path = golden.path
     failure = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
-    lines = [*golden.renames_told(), *(found.lines() if found else ["with these names every bit is equal"])]
+    lines = [*golden.rename_lines(), *(found.lines() if found else ["with these names every bit is equal"])]
     # A single edit is in the headline already.
     failure += [line for line in lines if not failure[0].endswith(f": {line}")]
     smaller: list[str] = []
@@ -295,7 +295,7 @@ def _update(golden: _Golden) -> Update | None:
     """Record again what differs; what changed, None where nothing did. Raises ReplayError and Failed."""
     path, level = golden.path, golden.level
     found = golden.differing()
-    moved = [*golden.moves_told(), *(golden.renames_told() if golden.is_renamed else [])]
+    moved = [*golden.move_lines(), *(golden.rename_lines() if golden.is_renamed else [])]
     if found is None and not moved:
         return None
     fresh = path.with_name(f".{os.getpid()}-{path.name}")

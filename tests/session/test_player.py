@@ -14,10 +14,10 @@ from sandbox.session.player.page import (
     STEPS,
     PlaybackData,
     PlayerPage,
+    event_lines,
     report_page,
     shown_box,
     steps_between,
-    told_of,
     watches_of,
 )
 from sandbox.session.replay.reader import read_replay
@@ -107,4 +107,4 @@ def test_lines_that_two_runs_share_are_said_once():
         run.advance()
     runs[1].submit(CutSprings((5,)))
     runs[1].advance()
-    assert [(line.tick, line.side) for line in told_of(runs, watches)] == [(0, None), (1, 1)]
+    assert [(line.tick, line.side) for line in event_lines(runs, watches)] == [(0, None), (1, 1)]

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from sandbox.session.commands import CutSprings
-from sandbox.session.player.page import PlaybackData, PlayerPage, ToldLine, gathered, shown_box, told_states
+from sandbox.session.player.page import EventLine, PlaybackData, PlayerPage, gathered, shown_box, states_of
 from sandbox.session.session import Session
 from tests.support.rope_level import rope_level
 
@@ -18,7 +18,7 @@ def rope_page(title: str = "Rope", lines: Sequence[str] = ("first difference at 
     for _ in range(12):
         runs[1].advance()
     runs[1].submit(CutSprings((4,)))
-    reels = [gathered(PlaybackData(name, level, box), told_states(run, 0, TICKS), 3, 13)
+    reels = [gathered(PlaybackData(name, level, box), states_of(run, 0, TICKS), 3, 13)
              for name, run in zip(("expected", "actual"), runs, strict=True)]  # fmt: skip
     return PlayerPage(title, box, 60, reels, marks=[(12, "cut_springs")], difference=(13, 5), lines=lines,
-                      happened=[ToldLine(0, "rope.3 was grabbed"), ToldLine(12, "rope:4 was cut", 1)])  # fmt: skip
+                      happened=[EventLine(0, "rope.3 was grabbed"), EventLine(12, "rope:4 was cut", 1)])  # fmt: skip

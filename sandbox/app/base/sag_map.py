@@ -92,13 +92,13 @@ def scale_for(sag_of: SagOf, includes: tuple[float, ...]) -> CoefficientScale:
             scale = CoefficientScale(lowest, rest)
             if 1.0 - scale.place_of(0.9) < _THUMB:
                 continue
-            alive = share_alive(scale, sag_of)
+            alive = fraction_alive(scale, sag_of)
             if alive > most + 0.01:
                 best, most = scale, alive
     return best
 
 
-def share_alive(scale: CoefficientScale, sag_of: SagOf) -> float:
+def fraction_alive(scale: CoefficientScale, sag_of: SagOf) -> float:
     """The share of a pad of this axis both ways on which what is seen sags by a half to a hundred per cent."""
     values = scale.values(_SAMPLES)
     stiffness, damping = (axis.reshape(-1) for axis in np.meshgrid(values, values, indexing="ij"))

@@ -37,8 +37,8 @@ class DocumentActions:
         self.app = app
         self.editor: EditScreen | None = None
         self._autosave: Autosave | None = None
-        self._told_of_change = False
-        self._told_fault: str | None = None
+        self._reported_change = False
+        self._reported_fault: str | None = None
 
     # Opening.
 
@@ -162,7 +162,7 @@ class DocumentActions:
         self.give_up()
         if self._autosave is None:
             self._autosave = Autosave()
-        self._told_of_change = False
+        self._reported_change = False
         self.editor = EditScreen(self.app, History(Document(level), label), level_file)
         if level_file.warning:
             self.app.say(level_file.warning)
@@ -216,7 +216,7 @@ class DocumentActions:
             choose(self.app.ui, "Not saved", text, [("Save under another name", lambda: self._ask_name(then, typed))])
             return
         editor.history.mark_saved()
-        self._told_of_change = False
+        self._reported_change = False
         path = editor.level_file.path
         assert path is not None
         remember(path)
@@ -295,7 +295,7 @@ class DocumentActions:
         editor.apply("Revert to the file", Document(level))
         editor.history.mark_saved()
         self.give_up()
-        self._told_of_change = False
+        self._reported_change = False
         again = "" if level == before else " Undo (Ctrl+Z) brings your changes back."
         self.app.say(f"{_called(editor.level_file.path)} was read again.{again}")
 
@@ -329,8 +329,8 @@ class DocumentActions:
     def update(self) -> None:
         """Say once where the autosave cannot be written."""
         fault = self._autosave.fault if self._autosave is not None else None
-        if fault != self._told_fault:
-            self._told_fault = fault
+        if fault != self._reported_fault:
+            self._reported_fault = fault
             if fault is not None:
                 self.app.say(fault)
 
@@ -342,9 +342,9 @@ class DocumentActions:
     def look_at_disk(self) -> None:
         """Ask what to do where another program has written the file, once for each time."""
         editor = self.editor
-        if editor is None or self._told_of_change or self.app.ui.has_sheet or not editor.level_file.changed_on_disk():
+        if editor is None or self._reported_change or self.app.ui.has_sheet or not editor.level_file.changed_on_disk():
             return
-        self._told_of_change = True
+        self._reported_change = True
         path = editor.level_file.path
         choices = [("Read it again", self.revert), ("Keep my version", lambda: None)]
         text = "Another program changed this file. You can read it again, and undo that."

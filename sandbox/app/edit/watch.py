@@ -50,28 +50,28 @@ class Watch:
         self._since = 0.0
         self._lint: Iterator[Finding | None] | None = None
         self._found: list[Finding] = []
-        self._is_told = False
+        self._is_reported = False
         # Whether the level is to begin as the forecast has it, and whether that was shown before.
-        self._is_wanted = self._was_shown = False
+        self._is_pending = self._was_shown = False
 
     def begin_at_rest(self) -> None:
         """Start the level as it will hang: at once where that is known, else once it is."""
         if not self._screen.scene.items:
             self._screen.say("There is nothing on the sheet yet.")
             return
-        self._is_wanted, self._was_shown = True, self.forecasts
+        self._is_pending, self._was_shown = True, self.forecasts
         if not self.forecasts:
             self.toggle_forecast()
         self._take_forecast()
-        if self._is_wanted:
+        if self._is_pending:
             self._screen.say("Calculating the rest position; the level will begin there.")
 
     def _take_forecast(self) -> None:
         """Start everything where the forecast says it will hang, once that is known and wanted."""
         forecast, screen = self.forecast, self._screen
-        if not self._is_wanted or forecast is None or forecast.at_rest is None:
+        if not self._is_pending or forecast is None or forecast.at_rest is None:
             return
-        self._is_wanted = False
+        self._is_pending = False
         if forecast.position is None:
             screen.say(f"{forecast.text}.")
         elif self._level is screen.document.level:
@@ -85,7 +85,7 @@ class Watch:
     def toggle_forecast(self) -> None:
         """Work out where everything will hang, or no longer."""
         self.forecasts = not self.forecasts
-        self._is_wanted = self._is_wanted and self.forecasts
+        self._is_pending = self._is_pending and self.forecasts
         self.forecast = None
         self._level = None
 
@@ -163,7 +163,7 @@ class Watch:
             or self._lint is not None
             or (self._softness is not None and self._softness.is_measuring)
             or is_drawing
-            or (forecast is not None and not self._is_told)
+            or (forecast is not None and not self._is_reported)
         )
 
     def update(self, frame_time: float) -> None:
@@ -180,7 +180,7 @@ class Watch:
             return
         if before < PATIENCE:
             self._lint, self._found = findings(level, self._screen.scene), []
-            self._is_told = False
+            self._is_reported = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
             self.trail = Trail(level) if self.trails and self._screen.scene.items else None
             self.firing = Firing(level, *self._commands) if self._commands is not None and level.rules else None
@@ -188,9 +188,9 @@ class Watch:
         self._follow()
         if self.firing is not None and not self.firing.is_done:
             self.firing.advance(SLICE)
-        if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
-            self._is_told = True
-            if self._is_wanted:
+        if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_reported:
+            self._is_reported = True
+            if self._is_pending:
                 self._take_forecast()
             else:
                 self._screen.say(f"{self.forecast.text}.")

@@ -39,7 +39,7 @@ SPANS = (10.0, 30.0, 60.0, 5.0)
 MOST_PICKED = 4
 # A picture that is kept is this many times as large.
 PICTURE_SCALE = 2.0
-WANTED = "graphs"
+SHOWN = "graphs"
 
 # The runs that are measured, each with what stands before its names: one alone, nothing.
 Runs = Sequence[tuple[str, Playback]]
@@ -50,7 +50,7 @@ class GraphDock:
 
     def __init__(self, app: Application, runs: Callable[[], Runs]) -> None:
         self._app, self._runs = app, runs
-        kept = preference(WANTED)
+        kept = preference(SHOWN)
         self.is_shown = False
         self.shown = kept if kept in MEASURES else "energy"
         self.picked: list[int] = []
@@ -111,7 +111,7 @@ class GraphDock:
     def show(self, name: str) -> None:
         """Show a group of measures, one of MEASURES."""
         self.shown = name
-        set_preference(WANTED, name)
+        set_preference(SHOWN, name)
         if self._tabs is not None:
             self._tabs.show(name)
         elif self._one is not None:

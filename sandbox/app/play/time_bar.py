@@ -25,7 +25,7 @@ CLOCK_WIDTH, CLOCK_TEXT = 118.0, 12.0
 # A shorter track has no clock beside it.
 LEAST_TRACK = 80.0
 # Under what it is remembered whether the bar is wanted.
-WANTED = "timeline"
+SHOWN = "timeline"
 # Buttons at the left and at the right of the track: action and picture.
 LEFT = (("previous_mark", "previous_mark"), ("back", "back"), ("backwards", "backwards"), ("next_mark", "next_mark"))
 RIGHT = (("bookmark", "bookmark"), ("loop", "loop"), ("branches", "branch"))
@@ -36,7 +36,7 @@ class TimeBar:
 
     def __init__(self, app: Application, playback: Callable[[], Playback]) -> None:
         self._app, self._playback = app, playback
-        self.is_shown = playback().watching or preference(WANTED) is True
+        self.is_shown = playback().watching or preference(SHOWN) is True
         self.track: TimeTrack | None = None
         self._was_paused = False
         self._marks: tuple[object, list[Mark]] = (None, [])
@@ -121,7 +121,7 @@ class TimeBar:
 
     def _toggle(self) -> None:
         self.is_shown = not self.is_shown
-        set_preference(WANTED, self.is_shown or None)
+        set_preference(SHOWN, self.is_shown or None)
         self._app.rebuild()
 
     def _reveal(self) -> None:

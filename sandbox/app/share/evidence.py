@@ -17,7 +17,7 @@ from sandbox.physics.snapshot import Snapshot, take
 from sandbox.session.compare.comparison import Comparison
 from sandbox.session.compare.distance import metres, recorded_world
 from sandbox.session.compare.divergence import differing_particle, number_text
-from sandbox.session.player.page import told_states
+from sandbox.session.player.page import states_of
 from sandbox.session.session import Session
 
 # Of one side of a picture, and of a GIF [pixels]; of the line of words over each.
@@ -129,7 +129,7 @@ def _sides(comparison: Comparison) -> list[Shown]:
 def _state_at(run: Session, tick: int) -> Snapshot:
     """The state of a run at a tick that it has reached, or the last before it."""
     state = run.snapshot()
-    for world in told_states(run, tick, tick):
+    for world in states_of(run, tick, tick):
         state = take(world)
     return state
 
@@ -195,6 +195,6 @@ def _rings(comparison: Comparison, state: Snapshot) -> tuple[int | None, int | N
 def _states(run: Session, first: int, last: int, step: int) -> Iterator[tuple[int, Snapshot]]:
     """States of a run every this many ticks, those before its present tick told again."""
     present = run.tick
-    for world in told_states(run, first, last):
+    for world in states_of(run, first, last):
         if (world.tick - first) % step == 0 or world.tick == present:
             yield world.tick, take(world)

@@ -75,8 +75,8 @@ class ScrollBar(Widget):
     def on_drag(self, at: Pixel) -> None:
         """Scroll by the thumb."""
         if self._grip is not None:
-            room = max(self.rect.height - self._thumb()[1], 1.0)
-            self._scrolled((at[1] - self.rect.top - self._grip) / room * (self.height - self.page))
+            travel = max(self.rect.height - self._thumb()[1], 1.0)
+            self._scrolled((at[1] - self.rect.top - self._grip) / travel * (self.height - self.page))
 
     def on_release(self, at: Pixel) -> None:
         """Release the thumb."""

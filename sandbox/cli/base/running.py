@@ -57,13 +57,13 @@ def watching(ticks: int) -> "Iterator[Watched]":
 
 def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Replay | None") -> str:
     """Write the page that plays one run, which has not begun; what was written."""
-    from sandbox.session.player.page import PlayerPage, command_marks, played, told_of, watches_of
+    from sandbox.session.player.page import PlayerPage, command_marks, event_lines, played, watches_of
 
     runs = [session]
     watches = watches_of(runs)
     with watching(ticks) as watched:
         content = played([name], runs, ticks, watched=watched, watches=watches)
-        page = PlayerPage(name, *content, marks=command_marks(replay), happened=told_of(runs, watches))
+        page = PlayerPage(name, *content, marks=command_marks(replay), happened=event_lines(runs, watches))
     page.write(path)
     return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.sides[0].ticks)} pictures"
 

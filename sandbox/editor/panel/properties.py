@@ -176,7 +176,7 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
         return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
     value = same([part.__dict__[name] for part in parts])
     if name == "rest_length":
-        about = _told_start(about, parts)
+        about = _with_its_start(about, parts)
     if about.kind == "extras":
         return extras_properties(about, [part.extras for part in parts], partial(_change_extras, selection))
 
@@ -186,7 +186,7 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
     return [Property(name, about, value, write)]
 
 
-def _told_start(about: FieldInfo, parts: Sequence[Definition]) -> FieldInfo:
+def _with_its_start(about: FieldInfo, parts: Sequence[Definition]) -> FieldInfo:
     """A rest length that says what a hydraulic begins at where it has none."""
     shortest = {part.hydraulic.shortest for part in parts if isinstance(part, SpringDef) and part.hydraulic is not None}
     if not shortest:

@@ -290,7 +290,7 @@ class SagMeter:
     def _trace(self) -> Work:
         """Measure the curve."""
         if not SOLVERS[self.settings.solver].bounded:
-            self._damping_ratio = yield from self._damping_share()
+            self._damping_ratio = yield from self._find_damping_ratio()
         points: list[tuple[float, float]] = []
         yield from self._find_foothold()
         for sag in CURVE:
@@ -311,7 +311,7 @@ class SagMeter:
             _, pair = self._as_soft_as(self._guess(CURVE[0]) * fraction)
             yield from self._sag_of(pair)
 
-    def _damping_share(self) -> Measuring:
+    def _find_damping_ratio(self) -> Measuring:
         """The fraction of Cd that holds up a standing body, from runs at two Cd."""
         _, (stiffness, damping, mode) = self._as_soft_as(self._guess(CURVE[0]))
         if not SOLVERS[self.settings.solver].proven_limit:

@@ -115,7 +115,7 @@ class PlaybackData:
 
 
 @dataclass(frozen=True)
-class ToldLine:
+class EventLine:
     """An event of a tick, in a line; side: the run in which alone it happened, None: in each."""
 
     tick: int
@@ -136,7 +136,7 @@ class PlayerPage:
     marks: Sequence[tuple[int, str]] = ()
     difference: tuple[int, int | None] | None = None
     lines: Sequence[str] = field(default=())
-    happened: Sequence[ToldLine] = field(default=())
+    happened: Sequence[EventLine] = field(default=())
 
     def text(self) -> str:
         """The page. Both sides have the ticks that both have."""
@@ -191,7 +191,7 @@ def steps_between(ticks: int, particles: int, sides: int) -> int:
     return max(1, -(-ticks * particles * sides * 4 // MOST_BYTES))
 
 
-def told_states(run: Session, first: int, last: int) -> Iterator[LevelWorld]:
+def states_of(run: Session, first: int, last: int) -> Iterator[LevelWorld]:
     """States of a run at every tick of first..last, those before its present tick told again; it is advanced.
 
     The world itself is given, where it has to be looked at before the next. Ends early where a command fails.
@@ -250,7 +250,7 @@ def played(
     level = runs[0].level
     box = shown_box(level, runs[0].keyframes(0, runs[0].tick)[0])
     step = steps_between(ticks, runs[0].world.particle_count, len(runs))
-    states = [told_states(run, 0, ticks) for run in runs]
+    states = [states_of(run, 0, ticks) for run in runs]
     if watches:
         states = [watch.following(each) for watch, each in zip(watches, states, strict=True)]
     sides = [
@@ -278,7 +278,7 @@ def watches_of(runs: Sequence[Session]) -> list[TouchWatch]:
     return [TouchWatch(run.level.zones) for run in runs]
 
 
-def told_of(runs: Sequence[Session], watches: Sequence[TouchWatch]) -> list[ToldLine]:
+def event_lines(runs: Sequence[Session], watches: Sequence[TouchWatch]) -> list[EventLine]:
     """The events of a run, or of two: one in the same tick of both is said once, all others of their side."""
     rate = runs[0].level.settings.tick_rate
     sides = []
@@ -288,7 +288,7 @@ def told_of(runs: Sequence[Session], watches: Sequence[TouchWatch]) -> list[Told
         if dropped:
             sides[-1].append((run.tick, f"{dropped} more lines of who touched whom: `sandbox info --all` lists them"))
     common = set.intersection(*map(set, sides))
-    lines = {line: ToldLine(*line, None if line in common else side) for side, of in enumerate(sides) for line in of}
+    lines = {line: EventLine(*line, None if line in common else side) for side, of in enumerate(sides) for line in of}
     return sorted(lines.values(), key=lambda line: line.tick)
 
 
@@ -305,5 +305,5 @@ def report_page(found: Comparison, watched: Watched = iter) -> PlayerPage:
     return PlayerPage(
         f"{replay.source}: diverged at tick {found.divergence.tick}",
         *played(names, runs, replay.ticks, tick, watched, watches), marks=command_marks(replay), difference=first,
-        lines=found.lines(), happened=told_of(runs, watches),
+        lines=found.lines(), happened=event_lines(runs, watches),
     )  # fmt: skip

@@ -234,7 +234,7 @@ def _away(triangles: Floats, place: Floats) -> float:
     return float(distances_from_segments(place, triangles, triangles + sides).min())
 
 
-def room_in(actor: Actor, piece: Piece) -> float:
+def clearance_in(actor: Actor, piece: Piece) -> float:
     """The radius [m] of the largest circle inside a piece at rest."""
     return _spot_in(actor, piece, actor.form[np.unique(piece.left)].mean(axis=0))[1]
 

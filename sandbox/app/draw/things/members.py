@@ -33,13 +33,13 @@ _PLAIN = {"bone": 0xF0E4CC, "brass": 0xE2B04E, "wood": 0xC8935A, "rubber": 0xEB6
 
 @dataclass(eq=False)
 class _Bars:
-    """Bars alike: pairs (m, 2) of slots, springs (m,), cell [m], one or of each, size as above, share of it."""
+    """Bars alike: pairs (m, 2) of slots, springs (m,), cell [m], one or of each, size as above, fraction of it."""
 
     pairs: Slots
     springs: Slots
     cell: float | Floats
     size: tuple[float, float, float]
-    share: float
+    thickness: float
     kind: str
     colour: int
     bolts: Slots
@@ -75,14 +75,14 @@ class Members:
         chord = row[:, 0] == row[:, 1]
         is_bridge = actor.body.type == "bridge"
         deck = np.flatnonzero(chord & ~row[:, 0]) if is_bridge else none
-        for chosen, share, planks in (
+        for chosen, thickness, planks in (
             (~chord, BRACE, none),
             (chord, 1.0, np.searchsorted(np.flatnonzero(chord), deck)),
         ):
             self._add(
                 _Bars(
-                    ends[chosen], springs[chosen], actor.cell, TRUSS, share * look.width, look.line, look.colour,
-                    bolts if share == 1.0 else none, planks,
+                    ends[chosen], springs[chosen], actor.cell, TRUSS, thickness * look.width, look.line, look.colour,
+                    bolts if thickness == 1.0 else none, planks,
                 )
             )  # fmt: skip
 
@@ -202,7 +202,7 @@ class _Sketch:
         part, least, most = bars.size
         scale, usual = self._frame.scale, bars.cell * (self._frame.zoom * part)
         half = np.minimum(most * scale, np.maximum(least * min(scale, 1.0), usual))
-        return np.array(np.broadcast_to(half * bars.share, len(bars.pairs)))
+        return np.array(np.broadcast_to(half * bars.thickness, len(bars.pairs)))
 
     def _add_deck(self, pairs: Slots, half: Floats) -> None:
         up = 1.15 * half

@@ -12,7 +12,7 @@ from sandbox.app.draw.raster.mark_kernels import CellArrays
 from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, MarkList, Painter
 from sandbox.app.draw.raster.pixels import Loops
 from sandbox.app.draw.textures import grains, laid, skin_table, woven
-from sandbox.app.draw.things.faces import room_in, spot_of
+from sandbox.app.draw.things.faces import clearance_in, spot_of
 from sandbox.app.draw.things.level_slots import FLUSH_FROM, FLUSH_RANGE, Actor, Frame, Piece, starts_of
 from sandbox.level.kinds.jelly import CircleShape
 from sandbox.physics.geometry.segment import lengths, signed_area
@@ -95,7 +95,7 @@ def shapes_of(actor: Actor, pieces: list[Piece], radius: float) -> list[Shape]:
     found = []
     for piece in pieces:
         shape = shape_of(actor, piece.loops, piece.inside, radius)
-        if room_in(actor, piece) < CRUMB * whole:
+        if clearance_in(actor, piece) < CRUMB * whole:
             shape.skin, shape.flushed = FLAT, None
         found.append(shape)
     return found
