@@ -75,12 +75,12 @@ def test_one_face_stays_with_the_piece_it_was_on_and_the_other_piece_has_its_own
     session.advance()
     things, _ = drawn(session)
     own = [face for face in things._faces if set(face.slots.tolist()) <= set(actor.slots.tolist())]
-    whole = max(face.room for face in things._faces)
+    whole = max(face.radius for face in things._faces)
     assert 1 <= len(own) <= 2 and len(things._faces) == before - 1 + len(own)
-    assert all(face.room <= whole for face in own)
+    assert all(face.radius <= whole for face in own)
     if len(own) == 2:
         assert not set(own[0].slots.tolist()) & set(own[1].slots.tolist())
-        assert min(face.room for face in own) >= LEAST_OWN * 0.75
+        assert min(face.radius for face in own) >= LEAST_OWN * 0.75
 
 
 def test_a_crumb_has_the_colour_of_its_body_and_neither_skin_nor_face():

@@ -333,7 +333,7 @@ class ZoneDef(Description):
 
 
 class Level(Description):
-    """A level: who made it, how time passes, and what is in it."""
+    """A level: its author, its settings, and all things in it."""
 
     model_config = ConfigDict(serialize_by_alias=True)
     # The plan that its check made, for building its world. It is no field: not written, compared or copied.
