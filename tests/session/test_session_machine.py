@@ -360,7 +360,7 @@ def short_intervals(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("examples", part_and_whole(15, EXAMPLES))
+@pytest.mark.parametrize("examples", part_and_whole(8, EXAMPLES))
 def test_a_session_does_what_its_model_does(examples):
     run_state_machine_as_test(
         SessionMachine, settings=settings(max_examples=examples, stateful_step_count=30, deadline=None)

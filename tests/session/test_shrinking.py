@@ -2,8 +2,6 @@
 
 import json
 import signal
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -34,6 +32,9 @@ from tests.support.interrupts import interrupts
 from tests.support.planted import CASES, edited
 from tests.support.rope_level import rope_level
 from tests.support.wholes import some_and_whole
+from tests.testing.conftest import LOADED
+
+pytest_plugins = ["pytester"]
 
 # A gesture of these is the cause; some need a second one.
 MOST_GESTURES = 3
@@ -183,7 +184,7 @@ def test_what_a_level_has_not_is_said(recorded):
 
 
 def test_the_command_line_writes_a_recording_and_a_test_that_fails_until_the_level_is_mended(
-    recorded, tmp_path, monkeypatch, capsys
+    recorded, tmp_path, monkeypatch, capsys, pytester
 ):
     path = recorded()
     monkeypatch.chdir(tmp_path)
@@ -197,11 +198,11 @@ def test_the_command_line_writes_a_recording_and_a_test_that_fails_until_the_lev
     assert "the test runs on levels/rope.json" in told
     smallest = read_replay(tmp_path / "walk.smallest.replay.gz")
     assert verify(smallest) is None and len(smallest.script) == 1
-    test = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_walk_smallest.py"]
-    failed = subprocess.run(test, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert failed.returncode == 1 and "high: FAILS: y of rope.end" in failed.stdout
+    test = [*LOADED, tmp_path / "test_walk_smallest.py"]
+    failed = pytester.runpytest_inprocess(*test)
+    assert failed.ret == 1 and "high: FAILS: y of rope.end" in failed.stdout.str()
     file.write_text(file.read_text().replace("-7.0", "-1000.0"))
-    assert subprocess.run(test, cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    assert pytester.runpytest_inprocess(*test).ret == 0
 
 
 def test_an_interrupt_keeps_the_smallest_until_then(recorded, tmp_path, monkeypatch, capsys):

@@ -9,6 +9,7 @@ from sandbox.level.document.canonical import level_text
 from sandbox.session.checking import solution_of, try_goal
 from sandbox.session.session import Session
 from tests.support import rules_level
+from tests.testing.conftest import LOADED
 
 pytest_plugins = ["pytester"]
 
@@ -81,7 +82,7 @@ def test_pytest_runs_the_solution_of_a_level_as_a_test_of_its_own(level, pyteste
     (pytester.path / "answering.json").write_bytes(level.read_bytes())
     (pytester.path / "answering.solution.replay.gz").write_bytes(solution_of(level).read_bytes())
     pytester.makeini("[pytest]\nsandbox_levels = *.json\n")
-    pytester.runpytest_subprocess("-v").assert_outcomes(passed=3)
+    pytester.runpytest_inprocess("-v", *LOADED).assert_outcomes(passed=3)
     harder(pytester.path / "answering.json")
-    found = pytester.runpytest_subprocess("-v")
+    found = pytester.runpytest_inprocess("-v", *LOADED)
     found.stdout.fnmatch_lines(["*goal FAILS: not won in the 4.00 s of answering.solution.replay.gz*"])
