@@ -231,7 +231,7 @@ class ClockRows:
         self.playback = panel.playback
 
     def build(self, rows):
-        self.tick = rows.named_field("Tick", "Ticks so far", lambda text: False)
+        self.tick = rows.ui.field(rows.row(ROW, 4), "", lambda text: False, rows.back)
         self.flip = rows.ui.button(rows.row(ROW, 6), "Upside down", self._flip, rows.back)
 
     def refresh(self, is_look):

@@ -169,7 +169,7 @@ def test_record_drag_slide_and_save_gives_a_replay_that_verifies(driver, documen
     for step in range(10):
         driver.move((start[0], start[1] - 8 * step))
     driver.release((start[0], start[1] - 72))
-    driver.fill(driver.panel.stiffness_field, "0.11")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.11")
     driver.key(pygame.K_r, CTRL)
     driver.type("my run")
     driver.key(pygame.K_RETURN)
@@ -219,7 +219,7 @@ def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
 
 
 def recording(driver, documents):
-    driver.fill(driver.panel.damping_field, "0.2")
+    driver.fill(driver.panel.form.fields["damping"][0], "0.2")
     driver.frames(30)
     driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_RETURN)
@@ -241,7 +241,7 @@ def test_a_replay_is_watched_to_its_end_and_said_to_be_equal(driver, documents):
 def test_touching_a_replay_takes_it_over(driver, documents):
     driver.app.files.open_path(recording(driver, documents))
     driver.frames(3)
-    driver.fill(driver.panel.stiffness_field, "0.25")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.25")
     driver.frames(100)
     assert "took over" in driver.playback.verdict
     assert driver.world.stiffness[0] == 0.25

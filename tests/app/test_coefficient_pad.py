@@ -71,16 +71,16 @@ def test_numbers_hz_and_pad_show_the_same_pair(padded):
     assert frequency_from_coefficients(*pair(padded), 1 / 60) == pytest.approx((3.0, 0.5))
     panel.choose_material(None)
     padded.frames(1)
-    assert panel.pad.state.is_mixed and panel.stiffness_field.text == "mixed"
+    assert panel.pad.state.is_mixed and panel.form.fields["stiffness"][0].text == "mixed"
 
 
 def test_the_knob_tells_what_is_proven_of_where_it_stands(padded):
     panel = padded.panel
     for typed in ("0.3", "0.99"):
-        padded.fill(panel.stiffness_field, typed)
-        padded.fill(panel.damping_field, typed)
+        padded.fill(panel.form.fields["stiffness"][0], typed)
+        padded.fill(panel.form.fields["damping"][0], typed)
     beyond = panel.pad._knob_colour()
-    padded.fill(panel.damping_field, "0.01")
+    padded.fill(panel.form.fields["damping"][0], "0.01")
     assert panel.pad._knob_colour() is not beyond
 
 

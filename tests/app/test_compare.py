@@ -68,7 +68,7 @@ def test_the_panel_sets_one_side_and_undo_takes_back_what_was_done_last_in_both(
     pair.click_widget(pair.panel.ways.buttons["pad"])
     pair.click_widget(pair.panel.sides.buttons["B"])
     pair.frames(1)
-    pair.fill(pair.panel.stiffness_field, "0.05")
+    pair.fill(pair.panel.form.fields["stiffness"][0], "0.05")
     assert stiffnesses(pair) == [0.3, 0.05]
     at = pair.pixel_of("rope.end")
     pair.press(at)
@@ -89,7 +89,7 @@ def test_the_panel_sets_one_side_and_undo_takes_back_what_was_done_last_in_both(
 
 
 def test_the_beginning_comes_back_with_the_settings_of_both(pair):
-    pair.fill(pair.panel.stiffness_field, "0.05")
+    pair.fill(pair.panel.form.fields["stiffness"][0], "0.05")
     pair.take_sliders()
     pair.click_widget(pair.panel.engineers.form.choices["solver"].buttons["direct"])
     pair.frames(20)

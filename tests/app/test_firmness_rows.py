@@ -56,7 +56,7 @@ def test_what_is_chosen_is_read_at_once_and_comes_about_within_moments(jelly):
     command = session.history.log[-1].command
     assert command == SetFirmness(0, sag=0.0, duration=75)
     # A slider takes it over from there.
-    jelly.fill(jelly.panel.stiffness_field, "0.5")
+    jelly.fill(jelly.panel.form.fields["stiffness"][0], "0.5")
     jelly.frames(1)
     assert 0.0 < in_force(jelly.world, SPRINGS)[0][0] < 0.5 == jelly.world.stiffness[0]
     for _ in range(75):
@@ -86,7 +86,7 @@ def test_typed_numbers_are_taken_and_those_out_of_reach_become_the_nearest(jelly
 
 def test_cs_and_cd_end_the_firmness_and_the_rows_read_what_they_amount_to(jelly):
     panel = jelly.panel
-    jelly.fill(panel.stiffness_field, "0.9")
+    jelly.fill(panel.form.fields["stiffness"][0], "0.9")
     jelly.frames(2)
     assert not jelly.world.lowest_mode.any()
     assert texts(jelly)[0] not in ("10", "mixed")

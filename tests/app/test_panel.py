@@ -28,7 +28,7 @@ def logged(driver):
 
 
 def test_a_slider_drag_is_one_gesture_and_undone_at_once(driver):
-    slider = driver.panel.stiffness
+    slider = driver.panel.form.sliders["stiffness"]
     y = slider.rect.centery
     driver.press((slider.pixel_of(0.01), y))
     for value in (0.02, 0.05, 0.1, 0.2):
@@ -42,7 +42,7 @@ def test_a_slider_drag_is_one_gesture_and_undone_at_once(driver):
 
 
 def test_two_slider_drags_are_two_gestures(driver):
-    slider = driver.panel.damping
+    slider = driver.panel.form.sliders["damping"]
     for value in (0.01, 0.1):
         driver.press((slider.pixel_of(value), slider.rect.centery))
         driver.release((slider.pixel_of(value), slider.rect.centery))
@@ -51,7 +51,7 @@ def test_two_slider_drags_are_two_gestures(driver):
 
 def test_a_chosen_material_alone_is_changed(driver):
     driver.panel._choose_material("rubber")
-    driver.fill(driver.panel.stiffness_field, "0.5")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.5")
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
 
@@ -89,7 +89,7 @@ def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
     driver.app.display.window.size = (900, 620)
     driver.frames(2)
     assert driver.panel.menu.chosen == "rubber"
-    driver.fill(driver.panel.stiffness_field, "0.5")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.5")
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
 
@@ -97,24 +97,24 @@ def test_all_springs_show_mixed_values_and_take_a_common_one(driver):
     panel = driver.panel
     panel.choose_material(None)
     driver.frames(1)
-    assert panel.stiffness_field.text == "mixed" and panel.stiffness.state.is_mixed
-    driver.fill(panel.stiffness_field, "0.07")
+    assert panel.form.fields["stiffness"][0].text == "mixed" and panel.form.sliders["stiffness"].state.is_mixed
+    driver.fill(panel.form.fields["stiffness"][0], "0.07")
     assert coefficients(driver)[0] == coefficients(driver)[2] == 0.07
-    assert panel.stiffness_field.text == "0.07" and not panel.stiffness.state.is_mixed
+    assert panel.form.fields["stiffness"][0].text == "0.07" and not panel.form.sliders["stiffness"].state.is_mixed
 
 
 @pytest.mark.parametrize("typed", ["1.5", "-0.1", "nan", "inf", "soft", ""])
 def test_a_typed_value_out_of_range_is_refused_with_a_line_and_the_old_one_stays(driver, typed):
     driver.panel._choose_material("steel")
     driver.frames()
-    field = driver.panel.stiffness_field
+    field = driver.panel.form.fields["stiffness"][0]
     driver.app.ui.focus_on(field)
     driver.key(pygame.K_DELETE)
     driver.fill(field, typed)
     driver.app.ui.blur()
     assert coefficients(driver)[0] == 0.3
     assert field.typed == "0.3"
-    assert any(notice.startswith("Cs: ") for notice in driver.notices)
+    assert any(notice.startswith("Cs  stiffness: ") for notice in driver.notices)
 
 
 def test_typing_hz_and_damping_ratio_sets_cs_and_cd_and_reads_back(driver):
@@ -144,7 +144,7 @@ def test_a_frequency_out_of_reach_is_refused_with_the_highest_one(driver):
 def test_cd_1_has_no_frequency_and_a_typed_frequency_leads_out_of_it(driver):
     panel = driver.panel
     panel._choose_material("steel")
-    driver.fill(panel.damping_field, "1")
+    driver.fill(panel.form.fields["damping"][0], "1")
     assert driver.entry("frequency").text == driver.entry("ratio").text == "\u221e"
     driver.fill(driver.entry("frequency"), "2")
     assert (
@@ -157,11 +157,11 @@ def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_ther
     panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
-    assert 0.3 < panel.damping.state.limit < 1.0
+    assert 0.3 < panel.form.sliders["damping"].state.limit < 1.0
     assert "proven for a single pass" in panel.note.text
     driver.click_widget(panel.engineers.form.choices["solver"].buttons["iterative"])
     assert driver.world.settings.solver == "iterative"
-    assert panel.damping.state.limit is None
+    assert panel.form.sliders["damping"].state.limit is None
     assert "Nothing is proven" in panel.note.text
 
 
@@ -172,8 +172,8 @@ def test_a_hooke_material_cannot_be_tuned_by_cs_and_says_so(open_app):
     panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
-    assert "k = 20 N/m" in panel.note.text and not panel.stiffness.state.enabled
-    driver.fill(panel.stiffness_field, "0.5")
+    assert "k = 20 N/m" in panel.note.text and not panel.form.sliders["stiffness"].state.enabled
+    driver.fill(panel.form.fields["stiffness"][0], "0.5")
     assert not logged(driver)
 
 
@@ -204,9 +204,9 @@ def test_edits_show_while_the_run_is_paused(driver):
     driver.app.act("pause")
     driver.frames()
     tick = driver.playback.session.tick
-    driver.fill(driver.panel.damping_field, "0.5")
+    driver.fill(driver.panel.form.fields["damping"][0], "0.5")
     assert driver.playback.session.tick == tick
-    assert driver.panel.damping_field.text == "0.5"
+    assert driver.panel.form.fields["damping"][0].text == "0.5"
 
 
 def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver):
@@ -216,14 +216,14 @@ def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver)
         driver.key(pygame.K_TAB)
         reached.append(ui.focus)
     wanted = [
-        panel.stiffness,
-        panel.damping,
+        panel.form.sliders["stiffness"],
+        panel.form.sliders["damping"],
         panel.menu,
         driver.entry("frequency"),
         *panel.engineers.form.choices["substeps"].buttons.values(),
     ]
     assert all(widget in reached for widget in wanted)
-    ui.focus_on(panel.damping)
+    ui.focus_on(panel.form.sliders["damping"])
     before = driver.world.damping[0]
     driver.key(pygame.K_LEFT)
     after = driver.world.damping[0]
@@ -231,7 +231,7 @@ def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver)
     driver.key(pygame.K_RIGHT, pygame.KMOD_SHIFT)
     assert after < driver.world.damping[0] < before
     driver.key(pygame.K_HOME)
-    assert driver.world.damping[0] == panel.damping.state.scale.lowest
+    assert driver.world.damping[0] == panel.form.sliders["damping"].state.scale.lowest
     driver.key(pygame.K_ESCAPE)
     assert ui.focus is None
 
@@ -262,7 +262,7 @@ def test_another_tick_rate_begins_the_run_anew_at_the_same_pace_or_with_the_same
 
 
 def test_a_run_at_another_tick_rate_has_the_solver_and_the_springs_that_were_set(driver):
-    driver.fill(driver.panel.stiffness_field, "0.07")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.07")
     driver.click_widget(driver.panel.engineers.form.choices["solver"].buttons["iterative"])
     driver.fill(driver.entry("tick_rate"), "240")
     driver.choose("Keep Cs and Cd as they are")

@@ -30,7 +30,7 @@ def asked_for(driver, name):
     panel = driver.panel
     solvers = panel.engineers.form.choices["solver"].buttons.values()
     return {
-        "springs": [panel.menu, panel.stiffness_field, panel.damping_field],
+        "springs": [panel.menu, panel.form.fields["stiffness"][0], panel.form.fields["damping"][0]],
         "engineers": [*solvers, driver.entry("iterations"), driver.entry("tick_rate")],
         "world": [driver.entry("gravity_x")],
     }[name]

@@ -87,8 +87,8 @@ def test_the_body_can_be_another_one_on_either_page(page):
 def test_it_says_what_the_springs_are_now(page):
     page.key(pygame.K_ESCAPE)
     page.frames(1)
-    page.fill(page.panel.stiffness_field, "0.05")
-    page.fill(page.panel.damping_field, "0.07")
+    page.fill(page.panel.form.fields["stiffness"][0], "0.05")
+    page.fill(page.panel.form.fields["damping"][0], "0.07")
     page.click_widget(page.panel.play.take_home)
     page.frames(2)
     page.choose("Python")

@@ -51,7 +51,7 @@ def test_bounce_and_friction_are_typed(driver):
 
 def test_a_key_does_it_and_springs_that_were_set_stay(open_app):
     driver = open_app(load_level("beating_heart"))
-    driver.fill(driver.panel.stiffness_field, "0.3")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.3")
     driver.key(pygame.K_t, pygame.KMOD_SHIFT)
     driver.frames(3)
     assert driver.world.has_contacts and np.any(driver.world.stiffness == 0.3)

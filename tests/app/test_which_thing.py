@@ -63,12 +63,12 @@ def test_what_a_menu_points_at_is_lit_on_the_stage(pile):
 
 def test_a_click_into_a_number_selects_it_and_tab_goes_on_from_there(pile):
     panel, ui = pile.panel, pile.app.ui
-    entry = panel.stiffness_field
+    entry = panel.form.fields["stiffness"][0]
     pile.press(entry.rect.center)
     pile.release(entry.rect.center)
     assert entry.focused and entry.selected == (0, len(entry.typed))
     pile.key(pygame.K_TAB)
-    assert ui.focus is panel.damping_field
+    assert ui.focus is panel.form.fields["damping"][0]
 
 
 def test_the_wheel_steps_the_pad_that_was_clicked_and_scrolls_elsewhere(pile):

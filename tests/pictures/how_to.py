@@ -53,7 +53,7 @@ def design() -> None:
     driver.frames(3)
     driver.app._notices.clear()
     driver.choose("B")
-    driver.fill(driver.panel.stiffness_field, "0.02")
+    driver.fill(driver.panel.form.fields["stiffness"][0], "0.02")
     driver.frames(60)
     driver.take(FOLDER / "compare.png")
     driver.app.close()

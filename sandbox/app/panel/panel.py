@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -19,15 +20,18 @@ from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.sweeps.pad_sweeps import PadMaps, PadSweeps
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.field import DASH, MIXED, typed_number
+from sandbox.app.widgets.field import DASH
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.property_widgets import PropertyOwner
 from sandbox.app.widgets.scroll import ScrollArea
-from sandbox.app.widgets.slider import Slider, SliderState
+from sandbox.app.widgets.slider import SliderState
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.panel.field_info import SAG
+from sandbox.editor.panel.material_properties import COEFFICIENTS
+from sandbox.editor.panel.property import MIXED, Property, Section, in_range
+from sandbox.level.format.quantities import significant
 from sandbox.physics.analysis.stability import (
     CoefficientLimits,
     CoefficientZones,
@@ -46,14 +50,13 @@ PAD_ROOM = 334.0
 SPRINGS_CHOICE = 118.0
 HEADING = 26.0
 SIDES_HEIGHT = 38.0
+# Of Cs and Cd as they are shown.
+DIGITS = 6
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
 # What all is under that play does without, and that the level's text does not ask for.
 MORE, MORE_TITLE = "more", "More"
-CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stiffer. 0 to 1"
-CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
-
 
 NO_SPRING = "there is no spring here that Cs and Cd apply to"
 
@@ -96,6 +99,7 @@ class Panel(PropertyOwner):
         self._gesture: int | None = None
         self._limits: CoefficientLimits | None = None
         self._limits_of: tuple[object, ...] = ()
+        self._limit_labels: dict[str, TextBlock] = {}
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
         self.firmness = FirmnessRows(playback, say)
@@ -186,42 +190,12 @@ class Panel(PropertyOwner):
         self.menu = WordPicker(ui, rows.row(30, 6, width=width), names, chosen, self._choose_material, rows.back)
         if self.by_pad:
             self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
-            self._build_pad()
-        else:
-            self._build_sliders()
+            place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
+            self.pad = CoefficientPad(ui, place, self._move, self.end_merge, rows.back)
+        for row, name in enumerate(() if self.by_pad else COEFFICIENTS):
+            self._limit_labels[name] = TextBlock(ui, rows.aside(row), "", rows.back, 11.0, WARNING)
+        self.form = rows.form(self, [self._coefficients()], self._slider_state)
         self.note = TextBlock(ui, rows.row(28, 2), "", rows.back)
-
-    def _build_sliders(self) -> None:
-        rows = self.rows
-        self.stiffness_limit = self._limit_label()
-        self.stiffness_field = rows.named_field(
-            "Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)
-        )
-        self.stiffness = self._slider(CS_TIP, lambda value: self._slide(value, True))
-        self.damping_limit = self._limit_label()
-        self.damping_field = rows.named_field("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False))
-        self.damping = self._slider(CD_TIP, lambda value: self._slide(value, False))
-
-    def _build_pad(self) -> None:
-        rows = self.rows
-        place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
-        self.pad = CoefficientPad(self.ui, place, self._move, self.end_merge, rows.back)
-        self.stiffness_field, self.damping_field = rows.beside(
-            ("Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)),
-            ("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False)),
-        )
-
-    def _limit_label(self) -> TextBlock:
-        """Make the label for a coefficient's proven limit, on its row."""
-        rows = self.rows
-        place = rows.place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
-        return TextBlock(self.ui, place, "", rows.back, 11.0, WARNING)
-
-    def _slider(self, tip: str, changed: Callable[[float], None]) -> Slider:
-        rows = self.rows
-        made = Slider(self.ui, rows.row(28, 2, MARGIN - 8, INSIDE + 16), changed, self.end_merge, rows.back)
-        made.tip = tip
-        return made
 
     def _first_material(self) -> int | None:
         """The material that the level's text speaks of, else that of the most springs; None: there is none."""
@@ -247,6 +221,7 @@ class Panel(PropertyOwner):
         self.firmness.refresh(self._refreshes % LOOK_EVERY == 0)
         for section in self.sections.values():
             section.refresh(is_look)
+        self.form.refresh()
         if self.maps is not None and self.pad is not None:
             self.maps.refresh(self.playback, self.material, self.pad)
         fresh = (self.playback.revision, self.material)
@@ -272,16 +247,28 @@ class Panel(PropertyOwner):
         chosen = world.material >= 0 if self.material is None else world.material == self.material
         return np.flatnonzero(chosen & (world.law != LAW_HOOKE) & world.spring_active)
 
+    def _coefficients(self) -> Section:
+        """Cs and Cd of the chosen springs."""
+        world, chosen, found = self.playback.session.world, self._chosen(), []
+        for name, about in COEFFICIENTS.items():
+            values = getattr(world, name)[chosen]
+            value: Any = None
+            if len(values):
+                value = MIXED if values.min() != values.max() else significant(values[0], DIGITS)
+            write = partial(self._set, name)
+            found.append(Property(name, replace(about, empty=DASH), value, write, slides=not self.by_pad))
+        return Section("", tuple(found))
+
     def _show_springs(self) -> None:
         world, chosen, limits = self.playback.session.world, self._chosen(), self._limits
         assert limits is not None
         stiffness, damping = world.stiffness[chosen], world.damping[chosen]
         if self.by_pad:
             self._show_on_pad(stiffness, damping)
-        else:
-            self._show_on_sliders(stiffness, damping, limits)
-        for values, entry in ((stiffness, self.stiffness_field), (damping, self.damping_field)):
-            entry.show(DASH if not len(values) else MIXED if values.min() != values.max() else f"{values[0]:.6g}")
+        self.form.show([self._coefficients()])
+        for name, label in self._limit_labels.items():
+            limit = getattr(limits, name) if len(chosen) else None
+            label.show_text(f"limit {number(limit)}" if limit is not None and limit < 1.0 else "")
         if not len(chosen):
             self.engineers.show_spring(None)
             self.note.show_text(self._no_spring_note())
@@ -289,20 +276,14 @@ class Panel(PropertyOwner):
         self.engineers.show_spring((stiffness, damping))
         self.note.show_text(stability_words(world.settings.solver, limits, stiffness, damping))
 
-    def _show_on_sliders(self, stiffness: np.ndarray, damping: np.ndarray, limits: CoefficientLimits) -> None:
-        for values, slider, limit, label in (
-            (stiffness, self.stiffness, limits.stiffness, self.stiffness_limit),
-            (damping, self.damping, limits.damping, self.damping_limit),
-        ):
-            if not len(values):
-                label.show_text("")
-                slider.show_state(replace(slider.state, enabled=False))
-                continue
-            label.show_text(f"limit {number(limit)}" if limit is not None and limit < 1.0 else "")
-            own = self._own()
-            of_level = None if own is None else own[slider is self.damping]
-            is_mixed = bool(values.min() != values.max())
-            slider.show_state(SliderState(float(np.median(values)), limit, of_level, is_mixed, True, self._scale))
+    def _slider_state(self, each: Property) -> SliderState:
+        """The middle of the chosen springs' values, what is proven of them, and what the level gives them."""
+        values = getattr(self.playback.session.world, each.field)[self._chosen()]
+        if not len(values):
+            return SliderState(enabled=False)
+        own, limit = self._own(), None if self._limits is None else getattr(self._limits, each.field)
+        of_level = None if own is None else own[each.field == "damping"]
+        return SliderState(float(np.median(values)), limit, of_level, each.value is MIXED, True, self._scale)
 
     def _own(self) -> tuple[float, float] | None:
         """Cs and Cd that the level gives the material, None where it gives none."""
@@ -382,11 +363,26 @@ class Panel(PropertyOwner):
         """Show a line to the person."""
         self._say(text)
 
-    def _both(self, stiffness: float, damping: float) -> Command:
-        """The command that sets Cs and Cd of the chosen springs. Raises EditError where there are none."""
-        if not len(self._chosen()):
+    def _both(self, stiffness: float | None, damping: float | None) -> Command:
+        """The command that sets Cs and Cd (None: leave) of the chosen springs. Raises EditError where there are none.
+
+        It says how a change of all springs is taken back, where there are several materials.
+        """
+        chosen = self._chosen()
+        if not len(chosen):
             raise EditError(NO_SPRING)
+        count = len(np.unique(self.playback.session.world.material[chosen]))
+        if self.material is None and count > 1:
+            self.say(f"This changes the springs of all {count} materials; Ctrl+Z takes it back.")
         return SetCoefficients(stiffness=stiffness, damping=damping, material=self.material)
+
+    def _set(self, name: str, playback: Playback, value: float) -> Command:
+        value = in_range(COEFFICIENTS[name], value)
+        return self._both(value, None) if name == "stiffness" else self._both(None, value)
+
+    def _move(self, stiffness: float, damping: float) -> None:
+        """Set Cs and Cd to where the pad was dragged."""
+        self.edit("Cs and Cd", lambda _: self._both(stiffness, damping), merge="pad")
 
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
@@ -462,46 +458,6 @@ class Panel(PropertyOwner):
 
     def _choose_material(self, name: str) -> None:
         self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))
-
-    def _slide(self, value: float, is_stiffness: bool) -> None:
-        if self._gesture is None:
-            self._gesture = self.playback.session.new_gesture()
-        self._set(value, is_stiffness, self._gesture)
-
-    def _move(self, stiffness: float, damping: float) -> None:
-        """Set Cs and Cd to where the pad was dragged."""
-        if self._gesture is None:
-            self._gesture = self.playback.session.new_gesture()
-        self._submit(SetCoefficients(stiffness, damping, self.material), self._gesture)
-        self._tell_of_all()
-
-    def _set(self, value: float, is_stiffness: bool, gesture: int | None = None) -> None:
-        command = SetCoefficients(
-            stiffness=value if is_stiffness else None,
-            damping=None if is_stiffness else value,
-            material=self.material,
-        )
-        self._submit(command, gesture)
-        self._tell_of_all()
-
-    def _tell_of_all(self) -> None:
-        """Say how a change of all springs is taken back, where there are several materials."""
-        count = len(np.unique(self.playback.session.world.material[self._chosen()]))
-        if self.material is None and count > 1:
-            self.say(f"This changes the springs of all {count} materials; Ctrl+Z takes it back.")
-
-    def _type_coefficient(self, text: str, is_stiffness: bool) -> bool:
-        value = typed_number(self.say, text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
-        if value is None or not self._has_springs():
-            return False
-        self._set(value, is_stiffness)
-        return True
-
-    def _has_springs(self) -> bool:
-        if not len(self._chosen()):
-            self.say(sentence(NO_SPRING))
-            return False
-        return True
 
 
 def _word_tip(sag: float) -> str:

@@ -12,8 +12,8 @@ from sandbox.app.base.shortcuts import hint
 from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.boxes import HEADING_SIZE, FoldHeading
-from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.property_widgets import PropertyOwner, PropertyWidgets
+from sandbox.app.widgets.slider import SliderState
 from sandbox.app.widgets.styles import LABELS
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.panel.property import Property, Section
@@ -25,6 +25,8 @@ INSIDE = PANEL_WIDTH - 2 * MARGIN
 TOP = 14.0
 ROW = 28.0
 ENTRY_WIDTH = 82.0
+# A number with its slider, and its title.
+SLIDING, NAME_WIDTH = 62.0, 92.0
 GAP = 12.0
 # Of a heading's row, what is beside its words; the rest is free for what belongs there.
 HEADING_ROOM = 34.0
@@ -51,31 +53,20 @@ class PanelRows:
         """A place at a distance below the top of the next row."""
         return self.ui.rect(x, self.y + below, width, height)
 
-    def form(self, owner: PropertyOwner, sections: Sequence[Section]) -> "PanelForm":
-        """Properties in the next rows, which stay the same ones."""
+    def form(
+        self, owner: PropertyOwner, sections: Sequence[Section],
+        slider_state: Callable[[Property], SliderState] | None = None,
+    ) -> "PanelForm":  # fmt: skip
+        """Properties in the next rows, which stay the same ones; slider_state: what their sliders show."""
         made = PanelForm(owner, self)
+        made._slider_state = slider_state or made._slider_state
         made.show(sections)
         return made
 
-    def named_field(self, text: str, tip: str, commit: Callable[[str], bool]) -> Field:
-        """A label at the left and a line to type into at the right, on a row of their own."""
-        self.ui.label(self.place(MARGIN, 0, INSIDE - ENTRY_WIDTH - 8, ROW), text, self.back)
-        return self._field(self.row(ROW, 4, MARGIN + INSIDE - ENTRY_WIDTH, ENTRY_WIDTH), tip, commit)
-
-    def beside(self, *fields: tuple[str, str, Callable[[str], bool]]) -> list[Field]:
-        """Lines to type into, side by side, each with its title and its tip."""
-        width, made = (INSIDE - GAP * (len(fields) - 1)) / len(fields), []
-        for index, (text, tip, commit) in enumerate(fields):
-            x = MARGIN + index * (width + GAP)
-            self.ui.label(self.place(x, 0, width, 18), text, self.back, "muted")
-            made.append(self._field(self.place(x, 19, width, ROW), tip, commit))
-        self.row(19 + ROW, 6)
-        return made
-
-    def _field(self, place: pygame.Rect, tip: str, commit: Callable[[str], bool]) -> Field:
-        made = self.ui.field(place, "", commit, self.back, 24)
-        made.tip = tip
-        return made
+    def aside(self, row: int) -> pygame.Rect:
+        """The place between title and value of one of the next numbers that slide."""
+        width = INSIDE - NAME_WIDTH - ENTRY_WIDTH - 12
+        return self.place(MARGIN + NAME_WIDTH + 4, 6 + row * SLIDING, width, ROW - 8)
 
     def section(self, title: str, is_open: bool, toggle: Callable[[], None], build: Callable[[], None]) -> None:
         """Add a heading, and what `build` makes under it, which is seen where the section is open."""
@@ -90,7 +81,10 @@ class PanelRows:
 
 
 class PanelForm(PropertyWidgets):
-    """Properties in rows of a panel: numbers side by side below their titles, choices beside theirs or below them."""
+    """Properties in rows of a panel: numbers side by side below their titles, choices beside theirs or below them.
+
+    A number that slides has a row of its own, at the right of its title, and the slider below.
+    """
 
     def __init__(self, owner: PropertyOwner, rows: PanelRows) -> None:
         super().__init__(owner, rows.back)
@@ -105,12 +99,12 @@ class PanelForm(PropertyWidgets):
             if section.title:
                 self._ui.label(self._rect(MARGIN, INSIDE, 16), section.title, self._holder)
                 self._y += 18
-            for is_choice, group in groupby(section.properties, lambda each: each.about.kind == "choice"):
-                if is_choice:
-                    for each in group:
-                        self._add_row(each)
-                else:
+            for is_alone, group in groupby(section.properties, lambda each: each.slides or each.about.kind == "choice"):
+                if not is_alone:
                     self._add_beside(list(group))
+                    continue
+                for each in group:
+                    (self._add_sliding if each.slides else self._add_row)(each)
         self._place.y = self._y
 
     def _add_row(self, each: Property) -> None:
@@ -123,6 +117,14 @@ class PanelForm(PropertyWidgets):
         self._tall = ROW - 2
         self._make(each, MARGIN + BESIDE if is_beside else MARGIN, INSIDE - BESIDE if is_beside else INSIDE)
         self._y += ROW + 5
+
+    def _add_sliding(self, each: Property) -> None:
+        self._tall = ROW
+        self._add_label(each, self._rect(MARGIN, NAME_WIDTH))
+        self._make(each, MARGIN + INSIDE - ENTRY_WIDTH, ENTRY_WIDTH)
+        self._y += ROW + 4
+        self._add_slider(each, self._rect(MARGIN - 8, INSIDE + 16))
+        self._y += SLIDING - ROW - 4
 
     def _add_beside(self, group: Sequence[Property]) -> None:
         width = (INSIDE - GAP * (len(group) - 1)) / len(group)

@@ -8,7 +8,6 @@ import pygame
 from sandbox.app.widgets.boxes import FoldHeading
 from sandbox.app.widgets.property_widgets import GAP, ROW, PropertyOwner, PropertyWidgets
 from sandbox.app.widgets.scroll import ScrollArea
-from sandbox.app.widgets.slider import Slider
 from sandbox.app.widgets.texts import TextBlock, wrapped
 from sandbox.app.widgets.widget import Widget
 from sandbox.editor.panel.property import Property, Section
@@ -101,7 +100,5 @@ class Form(PropertyWidgets):
         self._make(each, LABEL_WIDTH, width)
         if each.slides:
             self._y += ROW
-            slide = partial(self._slide, each.field)
-            slider = Slider(ui, self._rect(-4, self._inside + 8), slide, self._end_slide, self._holder)
-            self.sliders[each.field] = self._keep(slider, f"{each.field} slider")
+            self._add_slider(each, self._rect(-4, self._inside + 8))
         self._y += ROW + GAP

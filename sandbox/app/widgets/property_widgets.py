@@ -119,6 +119,8 @@ class PropertyWidgets:
     def __init__(self, owner: PropertyOwner, holder: Widget, tall: float = ROW) -> None:
         self._owner, self._ui, self._holder, self._tall = owner, owner.ui, holder, tall
         self.properties: dict[str, Property] = {}
+        # What the slider of a property shows.
+        self._slider_state: Callable[[Property], SliderState] = lambda each: SliderState(each.value)
         self._slid: tuple[str, float] | None = None
         self._is_stale = False
         self._structure: object = None
@@ -264,6 +266,11 @@ class PropertyWidgets:
         self._keep(field, f"{each.field} {axis}")
         return field
 
+    def _add_slider(self, each: Property, place: pygame.Rect) -> None:
+        slider = Slider(self._ui, place, partial(self._slide, each.field), self._end_slide, self._holder)
+        slider.tip = each.about.tooltip
+        self.sliders[each.field] = self._keep(slider, f"{each.field} slider")
+
     def _add_boxes(self, each: Property, x: float, width: float) -> None:
         labels = each.about.choices or ("yes",)
         wide = width / max(len(labels), 2)
@@ -309,7 +316,7 @@ class PropertyWidgets:
         if name in self.choices:
             self.choices[name].show("" if is_mixed or each.value is None else each.value)
         if name in self.sliders:
-            self.sliders[name].show_state(SliderState(each.value))
+            self.sliders[name].show_state(self._slider_state(each))
         if name in self.pickers:
             rows = self._rows(each)
             mixed_row = Row(MIXED.value, colour=MUTED)

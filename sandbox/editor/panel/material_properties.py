@@ -19,6 +19,10 @@ from sandbox.level.format.quantities import replaced, significant
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 
 TITLES = {"stiffness": "Cs  stiffness", "damping": "Cd  damping", "k": "k  stiffness", "c": "c  damping"}
+# Of Cs and Cd, a part per tick, nobody misses the unit.
+COEFFICIENTS = {
+    name: replace(fields_of(NissenMaterial)[name], title=TITLES[name], unit="") for name in ("stiffness", "damping")
+}
 _NAME = FieldInfo("text", "Name", tooltip="What levels and files call it.")
 _LAW = FieldInfo(
     "choice", "Law", choices=("nissen", "hooke"), labels=("Impulse", "Hooke"),
@@ -56,8 +60,7 @@ def material_sections(level: Level, name: str) -> tuple[Section, ...]:
     coefficients.append(Property("law", _LAW, law, partial(_set_law, name), label=f"{name}: law"))
     for field, about in fields_of(type(material)).items():
         if field in TITLES:
-            # Of Cs and Cd, a part per tick, nobody misses the unit.
-            about = replace(about, title=TITLES[field], unit="" if field in ("stiffness", "damping") else about.unit)
+            about = COEFFICIENTS.get(field, replace(about, title=TITLES[field]))
         elif field not in MaterialDef.model_fields or field == "look":
             continue
         label = f"{name}: {TITLES[field].split()[0] if field in TITLES else about.title.lower()}"

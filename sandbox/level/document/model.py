@@ -152,10 +152,10 @@ class NissenMaterial(MaterialDef):
     """The impulse-based spring (Nissen 2019): Cs and Cd per tick, the same behaviour for every mass."""
 
     stiffness: Coefficient = Field(
-        default=0.5, description="Cs: share of its length error that a spring corrects in a tick."
+        default=0.5, description="Cs: share of its length error that a spring corrects in a tick; more is stiffer."
     )
     damping: Coefficient = Field(
-        default=0.9, description="Cd: share of its velocity error that a spring removes in a tick."
+        default=0.9, description="Cd: share of its velocity error that a spring removes in a tick; more is calmer."
     )
 
 
