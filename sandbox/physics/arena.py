@@ -39,7 +39,7 @@ MORE = 2
 
 @inner_kernel
 def give_back(arena: Arena, to: int) -> None:
-    """Free what was laid out in an arena since a mark."""
+    """Free the arrays that were laid out in an arena since a mark."""
     # What lies beyond is 0 at all times, so that nothing is to be done where an array begins.
     for at in range(to, min(arena[0], arena.shape[0])):
         arena[at] = 0
@@ -60,7 +60,7 @@ def is_full(arena: Arena) -> bool:
 
 @inner_kernel
 def mark(arena: Arena) -> int:
-    """Where the next array begins: what lies behind it is given back by `give_back`."""
+    """The place of the next array, a mark for `give_back`."""
     return arena[0]
 
 

@@ -52,7 +52,7 @@ def _layout_of(hint: Any) -> FieldLayout | None:
 
 
 def with_empty(kind: type[Arrays], **arrays: Any) -> Arrays:
-    """A named tuple of arrays without items, of the kinds that its class says, but for what is given.
+    """A named tuple of these arrays, the others empty, of the kinds that its class declares.
 
     Raises TypeError where a field is neither given, nor has an ArrayKind, nor is such a tuple.
     """

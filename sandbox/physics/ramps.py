@@ -91,7 +91,7 @@ def _swap_areas(rest: FloatRows, now: Floats, k: int) -> None:
 
 @inner_kernel
 def begin_ramps(state: State, numbers: Floats, solver: int) -> None:
-    """Put what is in force in the coming tick in place of goals; numbers: the settings; solver: see settings.py."""
+    """Replace goals by the values of the coming tick; numbers: the settings; solver: see settings.py."""
     ticks, cs, cd = state.ramp_ticks, state.stiffness_now, state.damping_now
     for s in range(ticks.shape[0]):
         if ticks[s] > 0:
@@ -210,7 +210,7 @@ def set_number(state: State, numbers: Floats, place: int, value: float, duration
 
 
 def in_force(state: StateArrays, family: str) -> tuple[Floats, Floats, Floats]:
-    """Cs, Cd and lowest mode of the last tick, of all SPRINGS or CONSTRAINTS; where none ramps, what is set."""
+    """Cs, Cd and lowest mode of the last tick, of all SPRINGS or CONSTRAINTS; the set ones where none ramps."""
     ramps = getattr(state, f"{family}ramp_ticks") > 0
     stiffness, damping, mode = (
         np.where(ramps, getattr(state, f"{family}{name}_now"), getattr(state, f"{family}{name}"))

@@ -45,7 +45,7 @@ def _copied(world: World, columns: Iterable[Column]) -> dict[str, NDArray[Any]]:
 
 
 def _topology(world: World) -> dict[str, NDArray[Any]]:
-    """Copies of what is topology, which all snapshots share that are taken while it is the same."""
+    """Copies of the arrays of topology, shared by all snapshots until that changes."""
     return _copied(world, TOPOLOGY)
 
 
@@ -173,7 +173,7 @@ class Left:
 
 
 def leave(world: World, hashes: Mapping[str, str]) -> Left:
-    """Take note of a world that was hashed just now, to tell later what was written into it."""
+    """Note a world that was hashed just now, to tell later which arrays were written."""
     return Left(world.derived(_hashed).copy(), hashes, world.settings)
 
 

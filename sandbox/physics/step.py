@@ -53,7 +53,7 @@ def step(world: World) -> None:
 
 
 def contain(world: World, pointer: Any, code: int) -> None:
-    """Take back what a tick has said UNSOUND or LOST of; pointer: to the world's block."""
+    """Take back the values that a tick reported as UNSOUND or LOST; pointer: to the world's block."""
     arena = np.zeros(FIRST_ARENA, np.int64)
     count = take_back(pointer, arena, code)
     while arena[0] > len(arena):

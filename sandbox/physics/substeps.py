@@ -47,7 +47,7 @@ def substep_coefficients(world: World | Snapshot, highest: float = 1.0) -> Pair:
 
 
 def constraint_coefficients(world: World, highest: float = 1.0) -> Pair:
-    """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
+    """Cs and Cd (t,) of constraints in a substep, as `substep_coefficients` for springs."""
     return _of_substep(world, tick_constraint_coefficients(world), world.constraint_lowest_mode, highest)
 
 

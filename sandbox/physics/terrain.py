@@ -27,7 +27,7 @@ FLAT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Corners [m] (k, 2) of a piece of terrain, and what its surface is like.
+    """Corners [m] (k, 2) of a piece of terrain, with its contact properties.
 
     belt [m/s]: how fast the surface runs, to the right of who stands on it.
     kind: "line" has two sides; "solid" is a polygon that is solid inside, "hollow" one that is solid outside.
@@ -270,7 +270,7 @@ def _tips(looked_at: Floats, pairs: Slots, edges: Terrain) -> tuple[Slots, Slots
 
 
 def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats) -> bool:
-    """Whether what is solid lies around a vertex by more than half a turn."""
+    """Whether the solid side of a vertex spans more than half a turn."""
     incoming, outgoing = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
     if not len(incoming) or not len(outgoing) or not solid[incoming[0]]:
         return False
@@ -279,7 +279,7 @@ def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats) ->
 
 
 def _is_buried(place: Floats, a: Floats, b: Floats) -> bool:
-    """Whether a place lies inside what is solid, whose edges are a to b (e, 2), and not at its rim."""
+    """Whether a place lies inside solid terrain with edges a to b (e, 2), and not at its rim."""
     # Looked at a little to four sides of it: at a rim one of these is outside.
     sides = WELD * np.array([(2.0, 1.0), (-1.0, 2.0), (-2.0, -1.0), (1.0, -2.0)])
     return all(winding_number(place + side, a, b) > 0 for side in sides)

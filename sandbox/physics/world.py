@@ -41,7 +41,7 @@ _WATCHED = frozenset(
 
 
 class World(StateArrays):
-    """A world's state, see StateArrays, plus the settings of a tick, and what is constant: limits, driven, terrain.
+    """A world's state, see StateArrays, plus the settings of a tick, and its constants: limits, driven, terrain.
 
     Methods raise IndexError for a slot that is not there or not in use, and ValueError for what makes no sense, such as
     a number that is not finite; nothing has changed then. Slots are append-only: an index stays a particle's or
@@ -552,7 +552,7 @@ class World(StateArrays):
         self.__dict__["tick"] += 1
 
     def release(self, grab: int) -> None:
-        """Release what a hand holds; its slots wait for its next use. No bank keeps energy that the hand put in."""
+        """Release a hand's particle; its slots wait for the next use. No bank keeps energy that the hand put in."""
         self.command("release", grab=grab)
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:

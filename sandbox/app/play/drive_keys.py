@@ -65,7 +65,7 @@ class DriveKeys:
         return self._all
 
     def press(self, key: int, modifiers: int) -> bool:
-        """Drive what the key drives, and answer the rules that ask for it; whether it has a meaning."""
+        """Drive the parts of a key, and answer rules that ask for it; whether the key does anything here."""
         if key not in self._codes or modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
             return False
         if modifiers & pygame.KMOD_SHIFT and key in ARROWS.values():

@@ -102,7 +102,7 @@ class BestKeeping:
         return True
 
     def update(self) -> None:
-        """Let a frame pass."""
+        """Go on with recording best runs for a part of a frame."""
         self._works.go_on(BUDGET)
 
     def close(self) -> None:

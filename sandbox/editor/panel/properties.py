@@ -151,7 +151,7 @@ def _object_properties(level: Level, items: dict[Item, Definition], name: str, a
 
 
 def _in_seconds(level: Level, made: Property) -> list[Property]:
-    """A time in ticks in seconds as well, to be read."""
+    """A read-only property that says in seconds what another says in ticks."""
     if made.about.unit != "ticks" or not isinstance(made.value, int):
         return []
     text = number_text(float(f"{made.value / level.settings.tick_rate:.4g}"))

@@ -74,7 +74,7 @@ def contact_points(state: World | Snapshot, position: Floats | None = None) -> C
 def _features(
     state: World | Snapshot, position: Floats, kind: Slots, number: Slots
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Start and end [m] (k, 2) of what contacts are with, and whether it is solid on the left (k,)."""
+    """Start and end [m] (k, 2) of the features of contacts, and whether they are solid on the left (k,)."""
     start, end = np.zeros((2, len(kind), 2))
     is_solid = np.zeros(len(kind), dtype=np.bool_)
     discs, edges, ground = (

@@ -117,7 +117,7 @@ def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
 
 @inner_kernel
 def couple_of(contacts: Contacts, c: int, end: int) -> tuple[float, float]:
-    """What an impulse of 1 across adds to that of an end of a contact, beside its share along the tangent."""
+    """Couple (x, y) that a tangential impulse of 1 gives an end of a contact, beside its share along the tangent."""
     if end < TOUCHING - 1:
         return contacts.couple[c, 2 * end], contacts.couple[c, 2 * end + 1]
     x, y = 0.0, 0.0

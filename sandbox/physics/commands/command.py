@@ -285,7 +285,7 @@ def _refused(reason: int, place: int) -> int:
 
 @inner_kernel
 def spend(state: State, giver: int, kind: int, needs: int) -> None:
-    """Take from its budget what a command has needed that was carried out."""
+    """Take the cost of a command that was carried out from its budget."""
     if giver == HAND and state.deed_refused.shape[0] > 0:
         row = state.deed_budget[kind]
         if row >= 0:

@@ -166,7 +166,7 @@ class RefusedCommand(ValueError):
 
 
 def carry_out(pointer: Any, giver: int, name: str, values: Mapping[str, Any], world: StateArrays) -> Floats:
-    """Carry out a command of KINDS with what it is given, by name; the numbers that the kernel was given, or answers.
+    """Carry out a command of KINDS with these values of its fields; the numbers of the kernel's input, or answers.
 
     pointer: `world.lent`. Raises IndexError for a slot that is not there or not in use,
     ValueError for a number that is not finite or out of range, and RefusedCommand; nothing is changed then.
@@ -192,7 +192,7 @@ def numbers_of(name: str, values: Mapping[str, Any]) -> Floats:
 
 
 def _checked(kind: KernelCommand, name: str, values: Mapping[str, Any]) -> tuple[float, ...]:
-    """The numbers that a command has by a name; none of what is left out. Raises ValueError."""
+    """The checked numbers of a field of a command; none if it is left out. Raises ValueError."""
     if name in ANSWERS:
         return (0.0,) * ANSWERS[name]
     value = values[name]

@@ -97,7 +97,7 @@ _BY_FUNCTION: dict[Any, Kernel] = {}
 
 
 def kernel_of(held: Any) -> Kernel | None:
-    """The kernel that this is, or what runs it; None for anything else."""
+    """The kernel behind a function that modules hold, or the kernel itself; None for anything else."""
     return _BY_FUNCTION.get(held) if type(held) in _PLAIN else getattr(held, "_kernel", None)
 
 

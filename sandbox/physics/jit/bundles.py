@@ -47,7 +47,7 @@ class _Words(bytearray):
 
 
 def owner_of(bundle: Any) -> Any:
-    """The object that holds what a bundle was made of: `whole.item`."""
+    """The object that keeps alive the items of a bundle: `whole.item`."""
     base: Any = bundle.base
     return base.obj if isinstance(base, memoryview) else base
 
@@ -90,7 +90,7 @@ def dtype_of(name: str, words: int) -> np.dtype[Any]:
 
 
 def name_of(signature: Signature) -> str:
-    """The name that arrays of bundles have for what lies in them."""
+    """The name in bundles of arrays with this layout."""
     digest = hashlib.blake2b(signature_text(signature).encode(), digest_size=6).hexdigest()
     return f"{'' if signature[0] is tuple else signature[0].__name__}{digest}"
 

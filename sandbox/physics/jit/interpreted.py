@@ -22,7 +22,7 @@ class LentTuple:
 
 
 class Bundle(Generic[Items]):
-    """A bundle: what kernels get, and the objects that it was made of."""
+    """A bundle for interpreted kernels: their views, and the objects behind them."""
 
     def __init__(self, items: tuple[Any, ...]) -> None:
         self.given = items

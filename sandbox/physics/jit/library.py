@@ -97,7 +97,7 @@ class Library:
 
     @property
     def runs_wide(self) -> bool:
-        """Whether the processor runs the library for those of level v3 too."""
+        """Whether the processor runs libraries for x86-64 level v3 too."""
         return bool(self._code.runs_wide())
 
     def _connect(self) -> None:
@@ -142,7 +142,7 @@ class Library:
         return make(ctypes.addressof(method), int(table.ctypes.data), None)
 
     def _add_kind(self, form: Any, words: list[int]) -> int:
-        """Add what calling.c is told of an argument; how many words it is in a block."""
+        """Add the form of an argument as calling.c needs it; its number of words in a block."""
         if isinstance(form, str):
             words += (_FORMS[form], 0, 0, 0)
             return 1
@@ -171,7 +171,7 @@ def _fitted(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
 
 
 def _bring_back(arguments: tuple[Any, ...], fitted: tuple[Any, ...]) -> None:
-    """Give arrays what a kernel wrote into copies of them; what is read-only stays as it is."""
+    """Copy results back to arrays that a kernel got as copies; read-only ones stay as they are."""
     for argument, copy in zip(arguments, fitted, strict=True):
         if isinstance(argument, tuple):
             _bring_back(argument, copy)

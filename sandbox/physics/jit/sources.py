@@ -51,7 +51,7 @@ def text_digest(text: bytes) -> str:
 
 
 def _plain(node: Any) -> Any:
-    """A syntax tree as what the same source gives on every version of Python."""
+    """A syntax tree in a form that is the same on every version of Python."""
     if isinstance(node, list):
         return [_plain(item) for item in node if not (isinstance(item, ast.Expr) and _is_text(item.value))]
     if isinstance(node, ast.Constant):
@@ -109,7 +109,7 @@ def _bound(statement: ast.stmt) -> set[str]:
 
 
 def _imports(tree: ast.Module, names: set[str]) -> list[tuple[str, str, str]]:
-    """Module, name in it and name here of what is imported under one of these names."""
+    """Module, name there and name here of each import under one of these names."""
     found = []
     for statement in tree.body:
         if isinstance(statement, ast.Import | ast.ImportFrom):
@@ -135,7 +135,7 @@ def kernel_part(text: bytes, others: Iterable[str] = ()) -> tuple[list[Any], lis
 
 
 def kernel_digest(name: str, text: bytes, others: Iterable[str] = ()) -> str:
-    """A digest of what machine code follows from in a file of this name; of a maker all that it says."""
+    """Digest of a file's part that machine code follows from; of a maker that of all its text."""
     if name.endswith((".c", ".h")):
         return _digest(text)
     if name.startswith("physics/jit/"):

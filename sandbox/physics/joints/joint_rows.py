@@ -113,7 +113,7 @@ def clamped(impulse: float, limit: float) -> float:
 
 @inner_kernel
 def shortened(first: float, second: float, limit: float) -> float:
-    """By what two impulses at right angles are multiplied so that they are no longer than the limit."""
+    """Factor by which two impulses at right angles become no longer than the limit."""
     # Compared as squares: most are short, and no root is taken of them.
     square = first * first + second * second
     if square > limit * limit:

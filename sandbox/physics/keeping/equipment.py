@@ -41,7 +41,7 @@ class Firmness:
 
 
 class StiffForm(NamedTuple):
-    """The form of a body at rest: points [m] (n, 2), mass [kg] (n,), and what joins them, by index.
+    """The form of a body at rest: points [m] (n, 2), mass [kg] (n,), springs and constraints by index.
 
     pairs (m, 2); areas and bends (t, 3).
     """

@@ -126,7 +126,7 @@ def outline_fault(corners: FloatRows, least_area: float) -> int:
 
 @kernel
 def fill_outline(arena: Arena, corners: FloatRows) -> int:
-    """Mesh an outline that was drawn (n, 2) [m], as fine as it needs; or say what is wrong with it."""
+    """Mesh a drawn outline (n, 2) [m], as fine as it needs; the fault if it cannot be meshed."""
     _begin(arena)
     return _fill(corners, 0.0, arena)
 

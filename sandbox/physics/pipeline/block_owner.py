@@ -113,7 +113,7 @@ class BlockOwner:
         self._arrays = None
 
     def _make_room(self, kept: Iterable[Any]) -> None:
-        """Make room for what was asked for, and for these contacts, which are the last step's."""
+        """Grow arrays to the sizes that a step asked for, and put these contacts of the last step back."""
         copies = [array.copy() for array in kept]
         self.inputs.collisions.counts[KEPT] = len(copies[0])
         self._arenas[2] = lay_out(make_room, self.pointer, self._arenas[2])

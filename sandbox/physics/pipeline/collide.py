@@ -243,7 +243,7 @@ def store_impulses(collisions: Collisions) -> None:
 
 @inner_kernel
 def clamp(state: State, collisions: Collisions, h: float) -> None:
-    """Stop what would cross terrain, or come behind an edge, in the coming h [s]."""
+    """Stop particles that would cross terrain, or come behind an edge, in the coming h [s]."""
     outline, colliders, ahead = collisions.outline, collisions.colliders, collisions.work.ahead
     terrain, box, candidates = state.terrain, collisions.boxes.box, collisions.candidates
     velocity, inverse_mass = state.velocity, state.inverse_mass

@@ -69,7 +69,7 @@ MORE_ROOM = 2
 
 @kernel
 def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
-    """Lay out what follows from the topology of a world, and its solver."""
+    """Lay out all arrays that depend on the topology of a world, and its solver."""
     world = unpack(pointer)
     begin(arena)
     state = world.state
@@ -110,7 +110,7 @@ def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
 
 @kernel
 def derive_hands(pointer: Bundle[WorldBlock], arena: Arena) -> None:
-    """Lay out the joints of a world, which follow from what hands hold as well."""
+    """Lay out the joints of a world, which depend on held particles as well."""
     world = unpack(pointer)
     begin(arena)
     state, solver = world.state, world.choices[SOLVER]
@@ -144,7 +144,7 @@ def derive_hands(pointer: Bundle[WorldBlock], arena: Arena) -> None:
 
 @kernel
 def make_room(pointer: Bundle[WorldBlock], arena: Arena) -> None:
-    """Lay out what a step fills in, with room for more than any has asked for. Contacts that were kept are lost."""
+    """Lay out the arrays that a step fills in, larger than any step has needed. Kept contacts are lost."""
     world = unpack(pointer)
     begin(arena)
     collisions, demand, particles = world.collisions, world.demand, world.state.owner.shape[0]

@@ -73,7 +73,7 @@ FINISHED, UNSOUND, NO_ROOM, LOST, BROKE = range(5)
 
 @kernel
 def tick(pointer: Bundle[WorldBlock]) -> int:
-    """Advance a world by one tick of 1 / tick_rate seconds; what is to be done about it, see FINISHED."""
+    """Advance a world by one tick of 1 / tick_rate seconds; FINISHED, or a code for what the caller has to do."""
     world = unpack(pointer)
     state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
     progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
@@ -123,7 +123,7 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
 
 @kernel
 def take_back(pointer: Bundle[WorldBlock], arena: Arena, code: int) -> int:
-    """Take back what a tick has said UNSOUND or LOST of; how many values, and in the arena column and slot of each."""
+    """Take back the values that a tick reported as UNSOUND or LOST; their number; columns and slots in the arena."""
     world = unpack(pointer)
     begin(arena)
     found = new_slots(arena, 2 * _contain(world, code, world.progress[:0]))

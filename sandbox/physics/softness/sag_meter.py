@@ -112,7 +112,7 @@ class SagMeter:
         return sag in self._found, self._found.get(sag)
 
     def first_answer(self, sag: float) -> Firmness | None:
-        """About what makes the body sag so far, of a search that takes longer; None: it is too early, or not known."""
+        """A first guess of Cs and Cd for a sag, of a search that takes longer; None: too early, or none."""
         is_due = self._work.get(sag, 0.0) >= FIRST_ANSWER and self._has_reference
         return self._as_soft_as(self._guess(sag))[0] if is_due else None
 
@@ -169,7 +169,7 @@ class SagMeter:
         return any(SMALL < sag < LARGE for sag in self._sags.values())
 
     def estimate(self, pair: Pair) -> float | None:
-        """About what the sag is, from what is known by now of others; None: nothing is."""
+        """A guess of the sag at a pair from other results; None: there are none."""
         if self.curve is not None:
             stiffness, damping = (np.array([each]) for each in self._in_substep(pair))
             return float(self.curve.of(stiffness, damping)[0])
@@ -199,7 +199,7 @@ class SagMeter:
         return self._sags[pair]
 
     def _that_swings(self, pair: Pair) -> Pair:
-        """In the direct solver, where k alone holds what stands: a pair of the same k that comes to rest sooner."""
+        """In the direct solver, where k alone carries loads: a pair of the same k that comes to rest sooner."""
         if not SOLVERS[self.settings.solver].bounded:
             return pair
         soft = self._softness(pair)

@@ -260,7 +260,7 @@ def _is_held(world: World, body: FirmBody, slots: Slots) -> Flags:
 
 
 def _support_of(points: Floats, weight: Floats, held: Flags, pairs: Slots) -> tuple[Flags, Support]:
-    """How a body is held that is held somewhere, and what does not move of it then."""
+    """Which particles of a held body do not move, and how it is supported."""
     low, high = points.min(axis=0), points.max(axis=0)
     wide, tall = high - low
     if np.ptp(points[held], axis=0).max() == 0.0:

@@ -157,7 +157,7 @@ def sort_ascending(listed: Slots, begin: int, end: int) -> None:
 
 @inner_kernel
 def place_among(value: int, ascending: Slots, begin: int, end: int) -> int:
-    """Where in ascending[begin:end] a value is, or would be put before what is larger."""
+    """The place of a value in ascending[begin:end], or where it would be inserted."""
     while begin < end:
         middle = (begin + end) // 2
         if ascending[middle] < value:

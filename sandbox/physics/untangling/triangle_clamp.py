@@ -513,7 +513,7 @@ def lay_out_triangles(
 
 @inner_kernel
 def lay_out_collides(corners: SlotRows, state: State, row: Slots, arena: Arena, out: ClampedTriangles) -> None:
-    """Lay out what the rows of triangles (t, 3) collide with, of particles row (n,); all others with nothing."""
+    """Lay out the collision groups of triangles (t, 3), for particles row (n,); others collide with nothing."""
     collides = new_slots(arena, row.shape[0])
     set_field(out, "collides", collides)
     set_field(out, "terrain", state.terrain)

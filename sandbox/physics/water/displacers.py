@@ -106,7 +106,7 @@ def pools_of(pools: Sequence[Pool]) -> FloatRows:
 
 @inner_kernel
 def lay_out_water(state: State, arena: Arena, water: Water) -> None:
-    """Lay out what a world with these pools and hulls displaces, as its topology is now; nothing without a pool."""
+    """Lay out the displacing hulls and discs of a world with its present topology; nothing without a pool."""
     if water.pool.shape[0] == 0:
         return
     particles, springs, constraints = state.owner.shape[0], state.spring_active.shape[0], state.constraint_kind.shape[0]

@@ -47,7 +47,7 @@ _FORMS = {INTEGER: "integer", FLOAT: "float", FLAG: "flag", NOTHING: "nothing"}
 
 
 class NotCompiled(Exception):
-    """zig is not installed, or does not take what it was given."""
+    """zig is not installed, or refuses its input."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def all_entries() -> list[Kernel]:
 
 
 def gathered(kernels: Sequence[Kernel]) -> Gathered:
-    """Kernels in C++. Raises Untranslatable where one says what the language of kernels does not have."""
+    """Kernels in C++. Raises Untranslatable for code outside the language of kernels."""
     units: dict[str, list[Kernel]] = {}
     for kernel in kernels:
         unit = next(name for name, begin in _UNITS.items() if kernel.name.startswith(begin))
@@ -121,7 +121,7 @@ def compiled(
     texts: Mapping[str, str], symbols: Sequence[str], platform: Platform, kept: Path, checked: bool = False,
     sanitized: bool = False,
 ) -> bytes:  # fmt: skip
-    """The library of a platform: entries of kernels, with what calls them from Python; always the same bytes.
+    """The library of a platform: entries of kernels, with their callers from Python; always the same bytes.
 
     texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. checked:
     it is to end the process, and say where, at an index out of range; sanitized: at what C++ leaves undefined.

@@ -140,7 +140,7 @@ class Types:
 
 
 class Untranslatable(Exception):
-    """A kernel says what the language of kernels does not have; where, and why."""
+    """Code outside the language of kernels; where, and why."""
 
     def __init__(self, module: str, line: int, reason: str) -> None:
         super().__init__(f"{module.replace('.', '/')}.py:{line}: {reason}")
@@ -165,7 +165,7 @@ def joined(one: Type, other: Type) -> Type | None:
 
 
 def fits(given: Type, wanted: Type) -> bool:
-    """Whether what is given may stand where another type is wanted: a number where a wider one is."""
+    """Whether a value of a type may stand where another type is needed: a number where a wider one is."""
     return given == wanted or joined(given, wanted) == wanted
 
 

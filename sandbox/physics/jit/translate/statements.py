@@ -61,7 +61,7 @@ class Body(Expressions):
         return self.types != before
 
     def _given(self, node: ast.stmt) -> Iterator[tuple[str, ast.expr | Type]]:
-        """The names that a statement gives something, and what."""
+        """Names and values of a statement's assignments."""
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             assert node.value is not None
             yield node.target.id, node.value

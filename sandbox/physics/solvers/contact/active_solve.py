@@ -108,7 +108,7 @@ def solve_active(
 
 @inner_kernel
 def order_contacts(contacts: Contacts, at: ActiveSet, inverse_mass: Floats, delassus: Delassus) -> int:
-    """Order slow contacts by the later rank of what they touch; how many there are."""
+    """Order slow contacts by the later rank of the nodes that they touch; how many there are."""
     # The slow contacts of each node, in their order.
     count = contacts.particle.shape[0]
     for c in range(count):

@@ -113,7 +113,7 @@ class FreeContactScratch(NamedTuple):
 
 @inlined_kernel
 def small_steps(h: float) -> int:
-    """In how many small steps what nothing holds, and no load presses, goes through one of h [s]."""
+    """Number of small steps in a step of h [s] for particles that nothing holds and no load presses."""
     count = 1
     while count < MOST_SMALL_STEPS and h > SMALL_STEP * count * (1.0 + 1e-9):
         count *= 2

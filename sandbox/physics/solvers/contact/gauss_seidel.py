@@ -333,7 +333,7 @@ def relative_velocity(contacts: Contacts, c: int, velocity: FloatRows, delta_v: 
 
 @inner_kernel
 def surface_speeds(contacts: Contacts, c: int, by: FloatRows, surface: Floats) -> tuple[float, float]:
-    """The speeds of both surfaces of a contact, times their arms or ratios; 0 of what does not roll."""
+    """The speeds of both surfaces of a contact, times their arms or ratios; 0 where a particle does not roll."""
     p = 0.0
     q = 0.0
     if contacts.turning[c, 0] > 0.0:
@@ -351,7 +351,7 @@ def has_couple(contacts: Contacts, c: int) -> bool:
 
 @inner_kernel
 def couple_velocity(contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatRows) -> float:
-    """How fast surfaces of what does not roll move against each other, as that turns with its partners."""
+    """Relative speed of the surfaces of a contact that do not roll, from turning with their partners."""
     slip = 0.0
     for of in range(2):
         q = contacts.partner[c, of]
@@ -381,7 +381,7 @@ def _resist_rolling(contacts: Contacts, c: int, terms: ContactConstraints) -> No
 
 @inner_kernel
 def turn_surfaces(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> None:
-    """Push the surfaces of what rolls: s += 2 / m J."""
+    """Add an impulse to the surface speeds of rolling particles: s += 2 / m J."""
     if contacts.turning[c, 0] > 0.0:
         surface[contacts.particle[c]] += jp * contacts.turning[c, 0]  # (35)
     if contacts.turning[c, 1] > 0.0:
@@ -463,7 +463,7 @@ def _push_particle(p: int, jx: float, jy: float, delta_v: FloatRows, inverse_mas
 
 @inner_kernel
 def answer_push(p: int, jx: float, jy: float, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus) -> None:
-    """Add what an impulse at a particle does, joints aside: v += W J."""
+    """Add the velocity that an impulse at a particle causes, joints aside: v += W J."""
     k = delassus.block[p]
     if k < 0:
         delta_v[p, 0] += jx * inverse_mass[p]
@@ -489,7 +489,7 @@ def approach_of(contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatR
 
 @inner_kernel
 def add_change(velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats) -> None:
-    """Add what a step changes to the velocities of particles that can move."""
+    """Add the velocity changes of a step to particles that can move."""
     for p in range(inverse_mass.shape[0]):
         if inverse_mass[p] > 0.0:
             velocity[p, 0] += delta_v[p, 0]
