@@ -48,7 +48,7 @@ OPACITY = 225
 
 
 class CompareScreen(PlayScreen):
-    """Two runs on the screen: A, which all that is of one run goes by, and B beside it, or below where it is narrow."""
+    """Two runs on the screen: A, on which all actions of a single run work, and B beside or below it."""
 
     welcome: ClassVar[str] = WELCOME
     # Below what stands over the halves.

@@ -205,7 +205,7 @@ class _RimPen:
         self.marks.strokes(ends, half, colour)
 
     def discs(self, at: Floats, radius: ArrayLike, colour: ArrayLike, rim: bool = True) -> None:
-        """Discs at (k, 2)."""
+        """Draw discs at (k, 2)."""
         if rim:
             self.marks.discs(at, np.add(radius, HALO * self.frame.scale), self._rim, 0.85)
         self.marks.discs(at, radius, colour)

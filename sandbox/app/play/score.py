@@ -26,7 +26,7 @@ SHORT_TIME = 10.0
 
 @dataclass(frozen=True)
 class Chip:
-    """One of the chips: an icon, a name, a value; stars: how many are lit, None = there are none on it."""
+    """A chip of the score: an icon, a name, a value; stars: how many are lit, None = there are none on it."""
 
     icon: str = ""
     name: str = ""

@@ -52,7 +52,7 @@ class ToyWindow(Display):
 
     @property
     def place(self) -> tuple[int, int]:
-        """Where it is on the desktop [pixels]; always the same where it does not know."""
+        """The window's place on the desktop [pixels]; always the same where the system does not tell it."""
         x, y = self.window.position if self.floats else (0, 0)
         return x, y
 

@@ -176,7 +176,7 @@ def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple
 
 
 def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
-    """How many times gravity pulls at each particle (n,)."""
+    """Gravity as a factor at each particle (n,)."""
     scales = [part.gravity_scale for parts in (level.bodies, level.particles) for part in parts]
     return np.array(scales, dtype=np.float64)[scene.particle_item]
 

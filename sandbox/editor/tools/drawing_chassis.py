@@ -34,7 +34,7 @@ MATERIALS = {
 
 @dataclass(frozen=True)
 class ChassisOptions(Options):
-    """A chassis; both of its masses are those of particles."""
+    """Options of a chassis; both of its masses are those of particles."""
 
     mass: float = mass_option(3.0, text="Mass of each of the frame's eight particles.")
     axle_mass: float = mass_option(2.0, "axle mass", "Mass of each of the two axles.")

@@ -63,7 +63,7 @@ class PropertiesPage(SidePage):
         self.form.refresh()
 
     def _measured(self) -> str:
-        """How soft play says that the selected body is; "" of anything else."""
+        """The measured softness of the selected body, in words; "" of anything else."""
         chosen = list(self._screen.document.selection)
         if len(chosen) != 1 or chosen[0].kind != "body" or "firmness" not in self.form.properties:
             return ""
