@@ -10,10 +10,13 @@ from sandbox.physics.terrain import Chain
 from tests.support.closed_boxes import allowed, energy, outside, random_box
 from tests.support.contact_scenes import FLOOR, add_discs, add_jelly, world
 from tests.support.physics_scenes import run, scaled
+from tests.support.wholes import some_and_whole
 
 BIN = Chain(
     [(-3.0, -1.0), (3.0, -1.0), (3.0, 3.0), (2.0, 3.0), (1.5, 0.0), (-1.5, 0.0), (-2.0, 3.0), (-3.0, 3.0)], "solid"
 )
+# Of jellies: how many, their stiffness and damping.
+HEAPS = [(6, 0.05, 0.1), (6, 0.06, 0.12), (7, 0.05, 0.1)]
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -25,7 +28,7 @@ def test_a_closed_box_of_bodies_never_has_more_energy_than_at_its_start_and_noth
         assert outside(box.world) == 0
 
 
-@pytest.mark.parametrize("count,stiffness,damping", [(6, 0.05, 0.1), (6, 0.06, 0.12), (7, 0.05, 0.1)])
+@pytest.mark.parametrize(("count", "stiffness", "damping"), some_and_whole(HEAPS[:1], HEAPS))
 def test_soft_jellies_that_press_into_each_other_in_a_bin_stay_in_it_and_come_to_rest(count, stiffness, damping):
     w = world(BIN)
     for k in range(scaled(count, 3)):
