@@ -30,7 +30,7 @@ def test_a_car_built_by_mouse_crosses_a_bridge(edit):
     driver.post(pygame.KEYDOWN, key=pygame.K_d, mod=0, unicode="d")
     deepest = 0.0
     for _ in range(600):
-        driver.frames()
+        driver.pass_unseen()
         deepest = min(deepest, float(place(driver, "bridge.4")[1]))
         if place(driver, "rear axle")[0] > 2.5:
             break

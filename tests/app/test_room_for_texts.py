@@ -11,6 +11,7 @@ from sandbox.app.widgets.styles import Plate
 from sandbox.app.widgets.texts import Label, TextBlock, wrapped
 from sandbox.editor.items import items_of
 from tests.app.conftest import small_level
+from tests.support.wholes import some_and_whole
 
 # Sizes of windows [pixels], and scales.
 WINDOWS = [((640, 480), 1.0), ((800, 600), 1.5), ((1280, 720), 1.0), ((1280, 720), 1.5), ((640, 480), 2.0)]
@@ -131,7 +132,7 @@ def name(widget):
     return f"{type(widget).__name__} {getattr(widget, 'text', '')!r} {tuple(widget.rect)}"
 
 
-@pytest.mark.parametrize(("size", "scale"), WINDOWS)
+@pytest.mark.parametrize(("size", "scale"), some_and_whole(WINDOWS[::3], WINDOWS))
 def test_every_screen_of_a_run_has_room_for_all_its_texts(driver, size, scale, monkeypatch):
     monkeypatch.setattr("sandbox.app.base.desktop.platformdirs.user_pictures_dir", lambda: "/home/ann/Pictures")
     found = {}
@@ -150,7 +151,7 @@ def test_every_screen_of_a_run_has_room_for_all_its_texts(driver, size, scale, m
     assert not found
 
 
-@pytest.mark.parametrize(("size", "scale"), WINDOWS)
+@pytest.mark.parametrize(("size", "scale"), some_and_whole(WINDOWS[::3], WINDOWS))
 def test_every_page_of_the_editor_has_room_for_all_its_texts(edit, size, scale):
     driver, found = edit(small_level()), {}
     driver.app.chosen.choose("scale", scale)

@@ -641,8 +641,7 @@ def test_many_tags_are_not_lost_by_leaving_their_field(edit):
     assert len(level(driver).tags) == 60 and len(driver.editor.history.labels) == 1
 
 
-@pytest.mark.slow
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from(["properties", "materials", "level", "checks"]), st.integers(0, 40), TYPED)
 def test_no_text_whatever_breaks_a_field(driver, tab, number, text):
     choose(driver, ROPE)
