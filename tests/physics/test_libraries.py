@@ -125,6 +125,7 @@ def test_an_edited_kernel_is_not_run_from_the_library(package, untouched):
     assert lines == [f"{why}: kernels are interpreted, a hundred times slower"]
 
 
+@pytest.mark.whole_world
 @needs("zig", importlib.util.find_spec("ziglang"))
 def test_edited_kernels_are_compiled_once_on_this_machine(package, untouched):
     file = package / "physics" / "integrate.py"
