@@ -6,7 +6,7 @@ BANK_UNOPENED = -1.0
 BANK_EMPTIED = -2.0
 
 # The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
-LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
+LAW_NISSEN, LAW_HOOKE, LAW_HAND = LAWS = range(3)
 
 # How many particles can be held at once. A grab is a pinned cursor particle and one spring, in slots reserved when
 # the world is built, so that grabbing never moves another slot.
@@ -29,4 +29,10 @@ LEAST_MASS, MOST_MASS = 1e-9, 1e9
 TERRAIN_GROUP = 1
 ALL_GROUPS = (1 << 62) - 1
 # Kinds of edge of a spring: none, a line with two sides, an outline with what is solid on its left, or right.
-NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3
+NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = EDGES = range(4)
+# What a contact touched = its number * KINDS + its kind. TIP: a corner of terrain on an edge of a body; its number =
+# vertex * TIP_SHIFT + number of the spring. INSIDE: a disc that has come into a solid body through that edge, and goes
+# out there.
+DISC, EDGE, TERRAIN, TIP, INSIDE = 0, 1, 2, 3, 4
+KINDS = 5
+TIP_SHIFT = 0x100000000

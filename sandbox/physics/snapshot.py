@@ -78,10 +78,9 @@ def restore(world: World, snapshot: Snapshot) -> None:
             continue
         if len(present) != len(kept):
             setattr(world, column.name, kept.copy())
-        elif column.topology and not np.array_equal(present, kept):
-            world.change(column.name, kept)
-        elif not column.topology:
+        elif not (column.topology and np.array_equal(present, kept)):
             present[:] = kept
+            world.topology_version += column.topology
     world.tick = snapshot.tick
     world.grab_particle = snapshot.grab_particle
     world.grab_spring = snapshot.grab_spring

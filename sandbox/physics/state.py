@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import ArrayKind, Floats
-from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.marks import EDGES, GRAB_MATERIAL, LAWS, LONGEST_RAMP
 from sandbox.physics.terrain import Terrain
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -76,7 +76,8 @@ class Column:
     last good values are kept, and taken back where the present ones are not (sanitise.py). topology: solvers and
     collision derive from it what they keep from step to step (World.derived), so that it is only written by methods of
     World. sparse: no part of the state where all of it is `usual`, so that worlds without what it is for have the
-    hashes that they had before there was such a thing.
+    hashes that they had before there was such a thing. of: what a whole number may be: a slot of a family, of MATERIALS
+    or of FEATURES, or a mark of a range; least: the lowest slot, -1 where that stands for none.
     """
 
     stored: str
@@ -90,6 +91,8 @@ class Column:
     topology: bool
     sparse: bool
     usual: float
+    of: "Family | range | str | None"
+    least: int
     name: str = field(default="", init=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -112,11 +115,17 @@ class Column:
 def _array(
     stored: str, family: Family, dtype: type[Scalar], unit: str, meaning: str, *, width: int = 1,
     within: Range | None = None, guarded: bool = False, topology: bool = False, sparse: bool = False, usual: float = 0,
+    of: Family | range | str | None = None, least: int = 0,
 ) -> NDArray[Scalar]:  # fmt: skip
     """A line of the table, which a type checker takes for the array that an instance holds under that name."""
-    return cast(Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual))
+    return cast(
+        Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual, of, least)
+    )
 
 
+# What whole numbers are slots of that are no family: materials, which are no arrays; and what a contact touched, see
+# FEATURE_KINDS.
+MATERIALS, FEATURES = "material", "feature"
 P, S, E, C, A, T, H, G, R, N, B, L, K, D = Family
 F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
@@ -154,53 +163,53 @@ class StateArrays:
     unmoved = _array("unmoved", P, BOOL, "", "whether it has not taken a step yet: its velocity is that of the tick, not of half a step before", sparse=True)
     untouchable = _array("untouchable", P, BOOL, "", "whether the level lets no hand touch it", sparse=True)
 
-    particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True)
-    particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True)
+    particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True, of=P)
+    particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True, of=P)
     rest_length = _array("rest_length", S, F64, "m", "length at which it neither pulls nor pushes", within=NOT_NEGATIVE, guarded=True)
     natural_length = _array("natural_length", S, F64, "m", "its first rest length, before yielding and driving")
     stiffness = _array("stiffness", S, F64, "1", "Cs of a tick", within=SHARE, guarded=True)
     damping = _array("damping", S, F64, "1", "Cd of a tick", within=SHARE, guarded=True)
-    law = _array("law", S, I8, "", "LAW_NISSEN, LAW_HOOKE or LAW_HAND", topology=True)
+    law = _array("law", S, I8, "", "LAW_NISSEN, LAW_HOOKE or LAW_HAND", topology=True, of=LAWS)
     hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", within=NOT_NEGATIVE, guarded=True)
     hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", within=NOT_NEGATIVE, guarded=True)
-    material = _array("material", S, I32, "", "index into material_names, -1 = of a hand", topology=True)
+    material = _array("material", S, I32, "", "index into material_names, -1 = of a hand", topology=True, of=MATERIALS, least=-1)
     spring_active = _array("spring_active", S, BOOL, "", "whether it acts; false: cut, broken, or of a hand that holds nothing", topology=True)
     impulse = _array("impulse", S, F64, "N s", "impulse for the warm start of the iterative solver", width=2)
     tension = _array("tension", S, F64, "N s", "its pulling impulse of the last step, with \"auto\" substeps of the whole tick, for the direct solver")
-    edge = _array("edge", S, I8, "", "kind of edge for collisions: none, a line of two sides, or the outline of a solid body on its left or right", topology=True)
+    edge = _array("edge", S, I8, "", "kind of edge for collisions: none, a line of two sides, or the outline of a solid body on its left or right", topology=True, of=EDGES)
     lowest_mode = _array("lowest_mode", S, F64, "1", "lowest mode of the body whose firmness sets its Cs and Cd; 0: they are its own", within=NOT_NEGATIVE, guarded=True, sparse=True)
     stiffness_now = _array("stiffness_now", S, F64, "1", "Cs of the last tick, while it comes to what is set", sparse=True)
     damping_now = _array("damping_now", S, F64, "1", "Cd of the last tick, while it comes to what is set", sparse=True)
     lowest_mode_now = _array("lowest_mode_now", S, F64, "1", "lowest_mode of the last tick, while Cs and Cd come to what is set", sparse=True)
-    ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True)
+    ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True, of=range(LONGEST_RAMP + 1))
     belt = _array("belt", S, F64, "m/s", "how fast its surface runs as an edge, to the right of who stands on it", topology=True, sparse=True)
     spring_untouchable = _array("spring_untouchable", S, BOOL, "", "whether the level lets no hand touch it", sparse=True)
 
-    constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
-    constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True)
+    constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True, of=range(2))
+    constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True, of=C)
     constraint_corners = _array("element_corners", E, I32, "", "number of its corners", topology=True)
     constraint_rest = _array("element_rest", E, F64, "m^2 or 1", "wanted area and area of the form; or cosine and sine of the angle at rest", width=2, within=FINITE, guarded=True)
     constraint_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", within=SHARE, guarded=True)
     constraint_damping = _array("element_damping", E, F64, "1", "Cd of a tick", within=SHARE, guarded=True)
-    constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
+    constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own", of=MATERIALS, least=-1)
     constraint_active = _array("element_active", E, BOOL, "", "whether it acts; false once a spring along its sides is cut or broken", topology=True)
     constraint_lowest_mode = _array("element_lowest_mode", E, F64, "1", "as lowest_mode of a spring", within=NOT_NEGATIVE, guarded=True, sparse=True)
     constraint_stiffness_now = _array("element_stiffness_now", E, F64, "1", "as stiffness_now of a spring", sparse=True)
     constraint_damping_now = _array("element_damping_now", E, F64, "1", "as damping_now of a spring", sparse=True)
     constraint_lowest_mode_now = _array("element_lowest_mode_now", E, F64, "1", "as lowest_mode_now of a spring", sparse=True)
-    constraint_ramp_ticks = _array("element_ramp_ticks", E, I32, "tick", "as ramp_ticks of a spring", sparse=True)
+    constraint_ramp_ticks = _array("element_ramp_ticks", E, I32, "tick", "as ramp_ticks of a spring", sparse=True, of=range(LONGEST_RAMP + 1))
     constraint_area_now = _array("element_area_now", E, F64, "m^2", "wanted area of the last tick, while it comes to what is set", sparse=True)
-    constraint_area_ticks = _array("element_area_ticks", E, I32, "tick", "ticks until the wanted area is what is set; 0: it is", sparse=True)
+    constraint_area_ticks = _array("element_area_ticks", E, I32, "tick", "ticks until the wanted area is what is set; 0: it is", sparse=True, of=range(LONGEST_RAMP + 1))
 
-    corner_particle = _array("corner_particle", C, I32, "slot", "particle of the corner", topology=True)
+    corner_particle = _array("corner_particle", C, I32, "slot", "particle of the corner", topology=True, of=P)
     corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of its gradient, at rest", within=NOT_NEGATIVE, guarded=True)
     corner_form = _array("corner_form", C, F64, "m", "its place in the form at rest", width=2, within=FINITE, guarded=True, topology=True)
 
     actuator_value = _array("part_value", A, F64, "1", "its drive value, -1..1")
     actuator_impulse = _array("part_impulse", A, F64, "N m s", "impulse of a motor in the last step, with \"auto\" substeps of the whole tick", sparse=True)
 
-    contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step")
-    contact_feature = _array("contact_feature", T, I64, "", "what the particle touched (contacts.py)")
+    contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step", of=P)
+    contact_feature = _array("contact_feature", T, I64, "", "what the particle touched (contacts.py)", of=FEATURES)
     contact_impulse = _array("contact_impulse", T, F64, "N s", "impulse along and across the contact", width=2, within=FINITE)
     contact_impact = _array("contact_impact", T, F64, "N s", "impulse of its impacts along the contact in the last tick, not part of `contact_impulse`; for sounds and pictures", within=FINITE, sparse=True)
 
@@ -208,21 +217,21 @@ class StateArrays:
     hand_radius = _array("hand_radius", H, F64, "m", "particles of the body within this distance of the grabbed one share the force; 0: only the grabbed one bears it", sparse=True)
     hand_force = _array("hand_force", H, F64, "N", "its force in the last substep", width=2, sparse=True)
     setting_now = _array("setting_now", G, F64, "m/s^2, m/s, 1/s or 1", "its value in the last tick, while it comes to what is set", sparse=True)
-    setting_ticks = _array("setting_ticks", G, I32, "tick", "ticks until it is what is set; 0: it is", sparse=True)
+    setting_ticks = _array("setting_ticks", G, I32, "tick", "ticks until it is what is set; 0: it is", sparse=True, of=range(LONGEST_RAMP + 1))
 
-    rule_held = _array("rule_held", R, I32, "tick", "for how many ticks on end what it asks has held", sparse=True)
-    rule_fired = _array("rule_fired", R, I32, "", "how often it fired", sparse=True)
+    rule_held = _array("rule_held", R, I32, "tick", "for how many ticks on end what it asks has held", sparse=True, of=range(2**31))
+    rule_fired = _array("rule_fired", R, I32, "", "how often it fired", sparse=True, of=range(2**31))
     rule_first = _array("rule_first", R, I64, "tick", "the tick at whose end it fired first; -1: it has not", sparse=True, usual=-1)
     rule_last = _array("rule_last", R, I64, "tick", "the tick at whose end it fired last; -1: it has not", sparse=True, usual=-1)
     rule_due = _array("rule_due", R, BOOL, "", "whether it fired in the last tick: its actions come before the next one", sparse=True)
-    rule_stars = _array("rule_stars", R, I8, "", "stars of its first win; 0: none yet", sparse=True)
+    rule_stars = _array("rule_stars", R, I8, "", "stars of its first win; 0: none yet", sparse=True, of=range(4))
     counter = _array("counter", N, F64, "1", "its value", sparse=True)
     probe_position = _array("probe_position", B, F64, "m", "where it was at the end of the last tick", width=2, sparse=True)
-    still_ticks = _array("still_ticks", L, I32, "tick", "for how many ticks on end it has been still", sparse=True)
+    still_ticks = _array("still_ticks", L, I32, "tick", "for how many ticks on end it has been still", sparse=True, of=range(2**31))
     key_down = _array("key_down", K, BOOL, "", "whether it is held", sparse=True)
 
     deed_refused = _array("deed_refused", D, BOOL, "", "whether the level lets no hand give it", sparse=True)
-    deed_budget = _array("deed_budget", D, I32, "", "the counter that says how often hands may still give it; -1: as often as they like", sparse=True, usual=-1)
+    deed_budget = _array("deed_budget", D, I32, "", "the counter that says how often hands may still give it; -1: as often as they like", sparse=True, usual=-1, of=N, least=-1)
     # fmt: on
     tick: int
 

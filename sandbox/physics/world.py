@@ -1,6 +1,6 @@
 """World: particles, springs, constraints, settings and tick, with the only methods that change them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -21,7 +21,7 @@ from sandbox.physics.rules import Rules
 from sandbox.physics.sanitise import Containment
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.softness.kernels.firm import FormTable
-from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
+from sandbox.physics.state import COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS
 
@@ -60,11 +60,11 @@ class World(StateArrays):
         # The last good values of what is guarded; never state.
         self.good: dict[str, Floats] = {}
         self.trust()
-        self._settings = settings or WorldSettings()
+        self._settings = WorldSettings() if settings is None else arguments.of_kind("settings", settings, WorldSettings)
         self._numbers, self._choices = np.array(self._settings.numbers), np.array(self._settings.choices)
-        self.append(Family.SETTING, len(self._numbers))
+        grow(self, Family.SETTING, len(self._numbers), {})
         self.tick = 0
-        self.material_names = tuple(material_names)
+        self.material_names = tuple(arguments.texts("material_names", material_names))
         self.limits: StrainLimits = unlimited(len(self.material_names))
         self.actuators = Actuators()
         # What a particle that is added while the world runs is like to the touch.
@@ -117,14 +117,15 @@ class World(StateArrays):
 
         slots: one, a list, a slice or flags.
         """
-        if name not in BY_NAME:
-            raise ValueError(f"there is no array {name}; there are {', '.join(BY_NAME)}")
+        column = arguments.column_of("name", name)
         array = getattr(self, name)
-        arguments.check_rows(name, slots, len(array))
-        array[slots] = values
+        rows = arguments.rows_at("slots", slots, len(array))
+        checked = arguments.values_of(column, values, array[rows].shape, arguments.room_of(self))
+        arguments.replaced(self, name, rows, checked)
+        array[rows] = checked
         if name in self.good:
-            self.good[name][slots] = values
-        if BY_NAME[name].topology:
+            self.good[name][rows] = checked
+        if column.topology:
             self.topology_version += 1
 
     def trust(self) -> None:
@@ -139,34 +140,22 @@ class World(StateArrays):
                 self.good[column.name] = values.copy()
 
     def append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
-        """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
-        self._grow(family, count, arguments.rows_of(family, count, arrays))
+        """Append `count` particles or springs with values of the arrays of that family: (count, ...) or one for all.
+
+        What is not given is as usual; they are named +.0, +.1, ... or +:0, +:1, ...
+        """
+        grow(self, family, count, arguments.added_rows(self, family, count, arrays))
+        self.name_slots_to(self.particle_count, self.spring_count)
 
     @property
     def rule_keys(self) -> tuple[str, ...]:
         """The keys that rules ask for."""
         return self.row_names[Family.KEY]
 
-    def _grow(self, family: Family, count: int, arrays: dict[str, NDArray[Any]]) -> None:
-        room, mine = self._capacity.appended, self.__dict__
-        for column in FAMILIES[family]:
-            name = column.name
-            grown = room(name, mine[name], count)
-            grown[len(grown) - count :] = arrays.get(name, column.usual)
-            # One change of topology for all of them, however many there are.
-            mine[name] = grown
-            if column.guarded:
-                good = self.good[name] = room(f"good {name}", self.good[name], count)
-                good[len(good) - count :] = grown[len(grown) - count :]
-        self.topology_version += 1
-        self.may_fly = True
-
     def disturb(self, *particles: NDArray[np.integer] | int) -> None:
         """Begin new energy banks for the bodies of these particles, which something outside has changed."""
-        for slots in particles:
-            arguments.check_rows("particles", slots, self.particle_count)
-        for slots in particles:
-            self.energy_bank[slots] = BANK_UNOPENED
+        for rows in [arguments.rows_at("particles", slots, self.particle_count) for slots in particles]:
+            self.energy_bank[rows] = BANK_UNOPENED
 
     @property
     def settings(self) -> WorldSettings:
@@ -224,11 +213,6 @@ class World(StateArrays):
         for name, value in equipment._asdict().items():
             setattr(self, name, value)
 
-    def keep_contacts(self, particle: NDArray[np.int32], feature: Slots, impulse: Floats, impact: Floats) -> None:
-        """Keep the contacts of a step and their impulses [N s] for the next, and those of the tick's impacts [N s]."""
-        self.contact_particle, self.contact_feature = particle, feature
-        self.contact_impulse, self.contact_impact = impulse, impact
-
     @property
     def particle_count(self) -> int:
         """Particle slots in use, active or not, grabs included."""
@@ -266,7 +250,7 @@ class World(StateArrays):
     def name_particle(self, slot: int, name: str) -> None:
         """Give a particle a second name to be found by. Raises ValueError where that is taken."""
         arguments.slot("slot", slot, PARTICLES, len(self.particle_names))
-        self.particle_naming.add_second(slot, name)
+        self.particle_naming.add_second(slot, arguments.text("name", name))
 
     def spring_slot(self, name: str) -> int:
         """Slot of the spring of that name. Raises KeyError."""
@@ -274,11 +258,11 @@ class World(StateArrays):
 
     def is_grab_particle(self, slot: int) -> bool:
         """Whether the slot is a grab's cursor."""
-        return 0 <= self.grab_particle <= slot < self.grab_particle + GRAB_COUNT
+        return 0 <= self.grab_particle <= arguments.whole("slot", slot) < self.grab_particle + GRAB_COUNT
 
     def is_grab_spring(self, slot: int) -> bool:
         """Whether the slot is a grab's spring."""
-        return 0 <= self.grab_spring <= slot < self.grab_spring + GRAB_COUNT
+        return 0 <= self.grab_spring <= arguments.whole("slot", slot) < self.grab_spring + GRAB_COUNT
 
     def add_particles(
         self,
@@ -304,14 +288,14 @@ class World(StateArrays):
         A pinned particle starts at rest. Raises ValueError for a name that is taken, no mass above 0, what is
         out of its range (docs/state.md), and other shapes.
         """
-        count, first = len(names), self.particle_count
+        count, first = len(arguments.texts("names", names)), self.particle_count
         masses, is_pinned = arguments.floats("mass", mass, (count,)), arguments.flags("pinned", pinned, (count,))
         if not np.all(masses > 0.0):
             raise ValueError("every particle has a mass above 0 kg")
         places = arguments.floats("position", position, (count, 2))
         velocities = np.where(is_pinned[:, None], 0.0, arguments.floats("velocity", velocity, (count, 2)))
         spins = np.where(is_pinned, 0.0, arguments.floats("spin", others.get("spin", 0.0), (count,)))
-        columns: dict[str, ArrayLike] = dict(
+        columns = others | dict(
             position=places,
             origin=places,
             velocity=velocities,
@@ -328,11 +312,11 @@ class World(StateArrays):
             owner=-1 - first - np.arange(count) if owner is None else owner,
             group=group,
             collides=collides,
-            **others | {"spin": spins},
+            spin=spins,
         )
-        rows = arguments.rows_of(Family.PARTICLE, count, columns)
+        rows = arguments.rows_of(self, Family.PARTICLE, count, columns)
         self.particle_naming.append(names)
-        self._grow(Family.PARTICLE, count, rows)
+        grow(self, Family.PARTICLE, count, rows)
         return first
 
     def add_springs(
@@ -347,13 +331,11 @@ class World(StateArrays):
         Raises IndexError for a slot that does not exist, and ValueError for a name that is taken, a spring from a
         particle to itself, numbers out of their range (docs/state.md), and other shapes.
         """
-        count, first = len(names), self.spring_count
+        count, first = len(arguments.texts("names", names)), self.spring_count
         a = arguments.slots("particle_a", particle_a, PARTICLES, self.particle_count)
         b = arguments.slots("particle_b", particle_b, PARTICLES, self.particle_count)
         if not len(a) == len(b) == count:
             raise ValueError(f"{count} names, {len(a)} slots particle_a and {len(b)} particle_b: one each is needed")
-        if np.any(a == b):
-            raise ValueError("a spring joins two different particles")
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
         rest = placed if rest_length is None else arguments.floats_or("rest_length", rest_length, placed, 0.0)
@@ -362,10 +344,9 @@ class World(StateArrays):
             law=law, hooke_stiffness=hooke_stiffness, hooke_damping=hooke_damping, material=material,
             spring_active=True, edge=edge, belt=belt,
         )  # fmt: skip
-        rows = arguments.rows_of(Family.SPRING, count, columns)
-        arguments.check_materials(rows["material"], len(self.material_names))
+        rows = arguments.rows_of(self, Family.SPRING, count, columns)
         self.spring_naming.append(names)
-        self._grow(Family.SPRING, count, rows)
+        grow(self, Family.SPRING, count, rows)
         # A grab's spring joins nothing yet.
         joins = np.broadcast_to(np.asarray(material) != GRAB_MATERIAL, count)
         self.spin[a[joins]] = self.spin[b[joins]] = 0.0
@@ -386,8 +367,8 @@ class World(StateArrays):
         """
         slots = arguments.slot_rows("corners", corners, PARTICLES, self.particle_count)
         count, size = slots.shape
-        if kind not in (AREA, BEND) or size < 3 or (kind == BEND and size != 3):
-            raise ValueError("an area has three corners or more, a bend three")
+        if (arguments.whole_from("kind", kind, AREA, BEND) == BEND and size != 3) or size < 3:
+            raise ValueError("corners: an area has three or more, a bend three")
         if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
@@ -396,23 +377,26 @@ class World(StateArrays):
         first = self.constraint_count
         columns: dict[str, ArrayLike] = dict(
             constraint_kind=kind, constraint_corners=size, constraint_rest=rest, constraint_stiffness=stiffness,
-            constraint_first=len(self.corner_particle) + size * np.arange(count), constraint_damping=damping,
-            constraint_material=material, constraint_active=True,
+            constraint_damping=damping, constraint_material=material, constraint_active=True,
         )  # fmt: skip
-        rows = arguments.rows_of(Family.CONSTRAINT, count, columns)
-        arguments.check_materials(rows["constraint_material"], len(self.material_names))
-        self._grow(Family.CONSTRAINT, count, rows)
-        self.append(
-            Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight,
-            corner_form=places.reshape(-1, 2),
-        )  # fmt: skip
+        of_corners: dict[str, ArrayLike] = dict(
+            corner_particle=slots.reshape(-1), corner_weight=weight, corner_form=places.reshape(-1, 2)
+        )
+        corner_rows = arguments.rows_of(self, Family.CORNER, count * size, of_corners)
+        rows = arguments.rows_of(self, Family.CONSTRAINT, count, columns)
+        rows["constraint_first"] = len(self.corner_particle) + size * np.arange(count)
+        grow(self, Family.CONSTRAINT, count, rows)
+        grow(self, Family.CORNER, count * size, corner_rows)
         self.spin[slots] = 0.0
         self.disturb(slots)
         return first
 
     def name_areas(self, name: str, constraints: range) -> None:
         """Name the areas of a body, to be inflated together. Raises IndexError."""
-        arguments.slots("constraints", constraints, CONSTRAINTS, self.constraint_count)
+        if arguments.text("name", name) and arguments.of_kind("constraints", constraints, range).step != 1:
+            raise ValueError(f"constraints {constraints}: a range of step 1 is needed")
+        arguments.slots("constraints", constraints[:1] or constraints[-1:], CONSTRAINTS, self.constraint_count)
+        arguments.slots("constraints", constraints[-1:], CONSTRAINTS, self.constraint_count)
         self.area_names += (name,)
         self.area_constraints += (constraints,)
 
@@ -444,7 +428,7 @@ class World(StateArrays):
             _GRAB_NAMES, cursors, held, rest_length=0.0, stiffness=GRAB_STIFFNESS, damping=GRAB_DAMPING,
             material=GRAB_MATERIAL,
         )  # fmt: skip
-        self.append(Family.HAND, GRAB_COUNT)
+        grow(self, Family.HAND, GRAB_COUNT, {})
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
@@ -557,12 +541,26 @@ class World(StateArrays):
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
+        for names, naming, count in (
+            (arguments.texts("particles", particles), self.particle_naming, self.particle_count),
+            (arguments.texts("springs", springs), self.spring_naming, self.spring_count),
+        ):
+            naming.check(names, count)
         self.particle_naming.append(particles)
         self.spring_naming.append(springs)
 
-    def name_grabs(self) -> None:
-        """Name the grabs' slots, where a restored state brought them along."""
-        self.name_slots(_GRAB_NAMES, _GRAB_NAMES)
+    def name_slots_to(self, particle_count: int, spring_count: int) -> None:
+        """Name the slots up to these counts that have no name yet, those of hands too."""
+        arguments.whole_from("particle_count", particle_count, 0, self.particle_count)
+        arguments.whole_from("spring_count", spring_count, 0, self.spring_count)
+        if len(self.particle_names) <= self.grab_particle < particle_count:
+            # A level without particles reserves its hands at the first grab, behind what was added until then.
+            self.name_slots_to(self.grab_particle, self.grab_spring)
+            self.name_slots(_GRAB_NAMES, _GRAB_NAMES)
+        self.name_slots(
+            self.particle_naming.unused("+.", particle_count - len(self.particle_names)),
+            self.spring_naming.unused("+:", spring_count - len(self.spring_names)),
+        )
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
@@ -570,6 +568,22 @@ class World(StateArrays):
             arguments.slot(argument, count, "rows", arguments.FARTHEST)
         self.particle_naming.forget_beyond(particle_count)
         self.spring_naming.forget_beyond(spring_count)
+
+
+def grow(world: World, family: Family, count: int, arrays: Mapping[str, ArrayLike]) -> None:
+    """Append rows of a family to a world's arrays: values that were checked, or usual ones for others to fill in."""
+    room, mine = world._capacity.appended, world.__dict__
+    for column in FAMILIES[family]:
+        name = column.name
+        grown = room(name, mine[name], count)
+        grown[len(grown) - count :] = arrays.get(name, column.usual)
+        # One change of topology for all of them, however many there are.
+        mine[name] = grown
+        if column.guarded:
+            good = world.good[name] = room(f"good {name}", world.good[name], count)
+            good[len(good) - count :] = grown[len(grown) - count :]
+    world.topology_version += 1
+    world.may_fly = True
 
 
 def _lend(world: World) -> Any:

@@ -15,7 +15,7 @@ from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, st
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.step import step
-from sandbox.physics.world import World
+from sandbox.physics.world import World, grow
 from tests.support.physics_scenes import grid, network, run, scaled
 
 
@@ -27,7 +27,7 @@ def busy_world(solver="iterative"):
     world.add_constraints(BEND, [[0, 1, 2]], damping=0.1, material=-1)
     world.fit(Actuators(("part",)), [0.5])
     for family in (Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY, Family.DEED):
-        world.append(family, 1)
+        grow(world, family, 1, {})
     world.reserve_grabs()
     world.hold(0, 12, (2.0, 2.5))
     run(world, 5)
@@ -100,7 +100,7 @@ def test_a_snapshot_is_a_read_only_copy():
 @pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.stored)
 def test_each_array_changes_the_hash_and_its_own_hash_alone(column):
     world = busy_world()
-    world.keep_contacts(np.zeros(1, dtype=np.int32), np.ones(1, dtype=np.int64), np.ones((1, 2)), np.ones(1))
+    grow(world, Family.CONTACT, 1, {"contact_feature": 1, "contact_impulse": 1.0, "contact_impact": 1.0})
     before, by_array = state_hash(world), hash_by_array(world)
     array = getattr(world, column.name).copy()
     if array.dtype.kind == "f":
@@ -109,10 +109,7 @@ def test_each_array_changes_the_hash_and_its_own_hash_alone(column):
         array[-1] = not array[-1]
     else:
         array[-1] += 1
-    if column.topology:
-        world.change(column.name, array)
-    else:
-        getattr(world, column.name)[:] = array
+    setattr(world, column.name, array)
     assert state_hash(world) != before
     assert [other for other, digest in hash_by_array(world).items() if digest != by_array.get(other)] == [column.stored]
 

@@ -18,7 +18,7 @@ from sandbox.physics.keeping.equipment import FirmBody, StiffForm
 from sandbox.physics.kits.removing import remove_particles
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import COLUMNS, Family
-from sandbox.physics.world import World
+from sandbox.physics.world import World, grow
 
 NAN, INF = math.nan, math.inf
 # Of a world of `made`: particles 0 to 3, of which 3 was removed, cursors of hands from 4 on; springs 0 to 2, of which 2
@@ -146,7 +146,7 @@ def made(has_hands: bool = True) -> World:
     )  # fmt: skip
     world.forms = (FirmBody("abc", shape, np.arange(3), np.arange(1)),)
     world.fit(Actuators(("engine",)), [0.25])
-    world.append(Family.KEY, 1)
+    grow(world, Family.KEY, 1, {})
     if has_hands:
         world.reserve_grabs()
         world.hold(0, 2, (0.5, 1.5))

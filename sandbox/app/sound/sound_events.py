@@ -17,8 +17,7 @@ from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP
-from sandbox.physics.marks import GRAB_COUNT
+from sandbox.physics.marks import DISC, GRAB_COUNT, KINDS, TERRAIN, TIP
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
 

@@ -10,7 +10,7 @@ from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Slots
-from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
+from sandbox.physics.marks import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
 
 Point = tuple[float, float]
 Pair = tuple[str, str]

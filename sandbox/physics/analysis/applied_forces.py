@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.narrow_phase import DISC, EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
-from sandbox.physics.marks import GRAB_MATERIAL, LINE, SOLID_RIGHT
+from sandbox.physics.marks import DISC, EDGE, GRAB_MATERIAL, INSIDE, KINDS, LINE, SOLID_RIGHT, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.substeps import substep_time

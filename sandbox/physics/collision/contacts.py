@@ -17,13 +17,7 @@ from sandbox.physics.arrays import FloatRows
 from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Candidates, Pairs
 from sandbox.physics.collision.ghost_vertices import CORNER, is_behind, is_enclosed, is_in
 from sandbox.physics.collision.narrow_phase import (
-    EDGE,
-    INSIDE,
-    KINDS,
     MARGIN,
-    TERRAIN,
-    TIP,
-    TIP_SHIFT,
     add_contact,
     collide_disc,
     collide_edges,
@@ -36,6 +30,7 @@ from sandbox.physics.collision.outline import TERRAIN_OWNER, Outline
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
 from sandbox.physics.geometry.segment import SHORTEST, closest_on_segment, doubled_area_of, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.marks import EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.terrain import Terrain, cells_between
 from sandbox.physics.topology.sorting import sort_ascending
 

@@ -26,6 +26,7 @@ from sandbox.physics.collision.ghost_vertices import (
 from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.geometry.segment import SHORTEST, closest_on_segment, difference, segment_of, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.marks import DISC, EDGE, KINDS, TERRAIN
 
 # A contact exists from this gap on, as a share of the radii together, so that what rests keeps its contacts; a larger
 # share costs contacts that do nothing, a smaller one lets crowded particles overlap when they are pushed.
@@ -34,11 +35,6 @@ MARGIN = 0.1
 FAST = 0.5
 # Particles of one body this many radii apart where they were created, or nearer, never touch each other.
 OWN_REACH = 2.0
-# TIP: a corner of terrain on an edge of a body; its number = vertex * TIP_SHIFT + number of the spring.
-# INSIDE: a disc that has come into a solid body through that edge, and goes out there.
-DISC, EDGE, TERRAIN, TIP, INSIDE = 0, 1, 2, 3, 4
-KINDS = 5
-TIP_SHIFT = 0x100000000
 # Edges that a fast particle meets one after the other in a step, at most.
 MOST_BOUNCES = 4
 

@@ -16,11 +16,12 @@ the velocity with which what meets fast enough leaves again.
 import math
 
 from sandbox.physics.arrays import Flags, FloatRows
-from sandbox.physics.collision.narrow_phase import EDGE, FAST, INSIDE, KINDS, MARGIN, TERRAIN, TIP, TIP_SHIFT
+from sandbox.physics.collision.narrow_phase import FAST, MARGIN
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weight_of
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.marks import EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.state import State
 
 # A partner that is touched itself is taken if it is as far off as this share of the farthest. On a short spring of soft

@@ -8,19 +8,12 @@ import math
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.contacts import edge_of_spring, meet_tip
-from sandbox.physics.collision.narrow_phase import (
-    EDGE,
-    INSIDE,
-    KINDS,
-    TIP,
-    are_joined,
-    may_collide,
-)
+from sandbox.physics.collision.narrow_phase import are_joined, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.marks import TERRAIN_GROUP
+from sandbox.physics.marks import EDGE, INSIDE, KINDS, TERRAIN_GROUP, TIP
 from sandbox.physics.terrain import Terrain, cells_between
 
 # A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance, and at

@@ -4,15 +4,16 @@ Every fault raises IndexError, for a slot that is not there, or ValueError; its 
 """
 
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.marks import LONGEST_RAMP
-from sandbox.physics.state import FAMILIES, Column, Family, Range, StateArrays
+from sandbox.physics.constraints import BEND
+from sandbox.physics.marks import DISC, KINDS, LONGEST_RAMP, TERRAIN, TIP, TIP_SHIFT
+from sandbox.physics.state import BY_NAME, FAMILIES, FEATURES, FINITE, MATERIALS, Column, Family, StateArrays
 
 # Words for the rows of families, where a slot of one is asked for.
 PARTICLES, SPRINGS, CONSTRAINTS = "particles", "springs", "constraints"
@@ -21,7 +22,14 @@ HANDS, PARTS, KEYS = "hands", "driven parts", "keys that rules ask for"
 _WHOLE, _NUMBERS, _LISTS = (int, np.integer), (float, int, np.integer, np.floating), (tuple, list, np.ndarray, Sequence)
 # Slots beyond this are beyond any array; kernels take no more digits.
 FARTHEST = 2**62
-ANY = Range(-math.inf, math.inf)
+# Arrays that have to fit to each other: see `check_ends` and, with a prefix, `check_corners`.
+_ENDS, _CORNERS = ("particle_a", "particle_b"), ("constraint_kind", "constraint_first", "constraint_corners")
+_TOGETHER = {name: ("", _ENDS) for name in _ENDS} | {name: ("constraint", _CORNERS) for name in _CORNERS}
+# Families whose rows come one by one; those of others come with what they are of.
+_ADDABLE = (Family.PARTICLE, Family.SPRING)
+# Rows that one call may add [1]; more fill the memory of a small computer.
+MOST_ADDED = 1_000_000
+Instance = TypeVar("Instance")
 
 
 def shown(value: Any) -> str:
@@ -40,6 +48,44 @@ def whole(argument: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, _WHOLE):
         raise ValueError(f"{argument} {shown(value)}: a whole number is needed")
     return int(value)
+
+
+def whole_from(argument: str, value: Any, least: int, most: int) -> int:
+    """A whole number from least to most."""
+    found = whole(argument, value)
+    if not least <= found <= most:
+        raise ValueError(f"{argument} {shown(value)}: a whole number from {least} to {most} is needed")
+    return found
+
+
+def of_kind(argument: str, value: Any, kind: type[Instance]) -> Instance:
+    """A value of a class."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{argument} {shown(value)}: a {kind.__name__} is needed")
+    return value
+
+
+def text(argument: str, value: Any) -> str:
+    """A text of Unicode, without lone surrogates."""
+    if not isinstance(value, str) or not _is_unicode(value):
+        raise ValueError(f"{argument} {shown(value)}: a text is needed")
+    return value
+
+
+def texts(argument: str, values: Any) -> Sequence[str]:
+    """A list of texts."""
+    found = listed(argument, values)
+    for value in found:
+        text(argument, value)
+    return found
+
+
+def _is_unicode(value: str) -> bool:
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def ticks(argument: str, value: Any) -> int:
@@ -83,20 +129,86 @@ def slot_rows(argument: str, values: Any, rows: str, count: int) -> Slots:
     return slots(argument, array.reshape(-1), rows, count).reshape(array.shape)
 
 
-def check_rows(argument: str, rows: Any, count: int) -> None:
-    """Whether rows of an array, by one slot, a list, a slice or flags, are there."""
+def rows_at(argument: str, rows: Any, count: int) -> Any:
+    """Rows of an array, by one slot, a list, a slice or flags, as numpy takes them."""
     if isinstance(rows, slice):
-        return
+        try:
+            return slice(*rows.indices(count))
+        except (TypeError, ValueError):
+            raise ValueError(f"{argument} {shown(rows)}: a slice of whole numbers is needed") from None
     array = _plain(argument, rows)
     if array.dtype.kind == "b" and array.shape == (count,):
+        return array
+    return slots(argument, array.reshape(-1), "rows", count).reshape(array.shape)
+
+
+class Room(NamedTuple):
+    """How many things whole numbers of arrays can name: rows by family, materials, corners and edges of terrain."""
+
+    rows: Mapping[Family, int]
+    materials: int
+    corners: int
+    edges: int
+
+
+def room_of(world: Any) -> Room:
+    """The room of a world."""
+    rows = {family: len(getattr(world, columns[0].name)) for family, columns in FAMILIES.items()}
+    return Room(rows, len(world.material_names), len(world.terrain.vertex), len(world.terrain.edge_a))
+
+
+def check_whole_numbers(argument: str, column: Column, values: NDArray[Any], room: Room) -> None:
+    """Refuse slots that are not there, and marks that mean nothing, in an array of a column."""
+    of, least = column.of, column.least
+    if of is None or not values.size:
         return
-    slots(argument, array.reshape(-1), "rows", count)
+    if isinstance(of, range):
+        is_bad = (values < of.start) | (values >= of.stop)
+        if is_bad.any():
+            value = shown(values[is_bad].flat[0])
+            raise ValueError(f"{argument} {value}: a whole number from {of.start} to {of.stop - 1} is needed")
+        return
+    if of == FEATURES:
+        is_bad, words, count = ~_touchable(values, room), "such a thing to touch", 0
+    else:
+        words = of.value if isinstance(of, Family) else MATERIALS
+        words, count = f"{words.partition(' ')[0]}s", room.rows[of] if isinstance(of, Family) else room.materials
+        is_bad = (values < least) | (values >= count)
+    if is_bad.any():
+        raise no_slot(argument, values[is_bad].flat[0], words, count)
 
 
-def check_materials(material: NDArray[np.integer], count: int) -> None:
-    """Refuse materials that a world does not have; -1 stands for none. Raises IndexError."""
-    if material.size and not -1 <= material.min() <= material.max() < count:
-        raise no_slot("material", int(material.max()), "materials", count)
+def _touchable(feature: NDArray[np.integer], room: Room) -> NDArray[np.bool_]:
+    """Which features of contacts are there."""
+    kind, number = feature % KINDS, feature // KINDS
+    springs = room.rows[Family.SPRING]
+    counts = np.full(len(feature), springs)
+    for each, count in ((DISC, room.rows[Family.PARTICLE]), (TERRAIN, room.edges), (TIP, room.corners * TIP_SHIFT)):
+        counts[kind == each] = count
+    there: NDArray[np.bool_] = (number >= 0) & (number < counts) & ((kind != TIP) | (number % TIP_SHIFT < springs))
+    return there
+
+
+def check_ends(a: NDArray[np.integer], b: NDArray[np.integer]) -> None:
+    """Refuse springs from a particle to itself."""
+    same = np.flatnonzero(a == b)
+    if len(same):
+        raise ValueError(f"particle_a, particle_b {a[same[0]]}: a spring joins two different particles")
+
+
+def check_corners(prefix: str, kinds_firsts_sizes: Sequence[NDArray[Any]], corner_count: int) -> None:
+    """Whether the corners of constraints, so many in all, lie one constraint after another; a bend has three.
+
+    kinds_firsts_sizes: arrays (k,) of kinds, first corners and numbers of corners. prefix: of their names in messages.
+    """
+    kind, first, sizes = kinds_firsts_sizes
+    ends = np.cumsum(sizes, dtype=np.int64)
+    if np.any(sizes < 3) or (int(ends[-1]) if len(ends) else 0) != corner_count:
+        raise ValueError(f"{prefix}_corners: do not add up to the corners that there are")
+    if np.any(first != ends - sizes):
+        raise ValueError(f"{prefix}_first: corners do not lie one {prefix.rpartition('.')[2]} after another")
+    if not np.all((kind != BEND) | (sizes == 3)):
+        raise ValueError(f"{prefix}_kind: a bend has three corners")
 
 
 def active_particles(world: StateArrays, argument: str, values: Any) -> Slots:
@@ -123,7 +235,7 @@ def number(argument: str, value: Any, least: float = -math.inf, most: float = ma
 
 def point(argument: str, value: Any) -> tuple[float, float]:
     """A pair of finite numbers."""
-    if isinstance(value, str) or not isinstance(value, _LISTS) or len(value) != 2:
+    if isinstance(value, str) or not isinstance(value, _LISTS) or getattr(value, "ndim", 1) != 1 or len(value) != 2:
         raise ValueError(f"{argument} {shown(value)}: a pair of numbers is needed")
     return number(argument, value[0]), number(argument, value[1])
 
@@ -155,36 +267,73 @@ def flags(argument: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[n
     return _spread(argument, array, shape)
 
 
-def listed(argument: str, values: Any) -> Sequence[Any] | NDArray[Any]:
+def listed(argument: str, values: Any) -> Any:
     """A list or an array of one dimension."""
     is_list = isinstance(values, _LISTS) and not isinstance(values, str)
     if not is_list or np.ndim(_plain(argument, values)) != 1:
         raise ValueError(f"{argument} {shown(values)}: a list is needed")
-    found: Sequence[Any] | NDArray[Any] = values
-    return found
+    return values
 
 
-def rows_of(family: Family, count: int, arrays: dict[str, ArrayLike]) -> dict[str, NDArray[Any]]:
-    """Rows of a family's arrays, by name, as their columns hold them; (count, ...) or one value for all."""
+def column_of(argument: str, name: Any) -> Column:
+    """The column of an array of that name."""
+    if not isinstance(name, str) or name not in BY_NAME:
+        raise ValueError(f"{argument} {shown(name)}: there is no such array; there are {', '.join(BY_NAME)}")
+    return BY_NAME[name]
+
+
+def added_rows(world: Any, family: Any, count: Any, arrays: dict[str, ArrayLike]) -> dict[str, NDArray[Any]]:
+    """Rows that a program appends to the arrays of a family, see `rows_of`; usual ones count too."""
+    if family not in _ADDABLE:
+        raise ValueError(f"family {shown(family)}: particles and springs are appended, others come with what they are")
+    whole_from("count", count, 0, MOST_ADDED)
+    usual = {column.name: column.usual for column in FAMILIES[family] if column.of or column.within}
+    return rows_of(world, family, count, usual | arrays)
+
+
+def rows_of(world: Any, family: Family, count: int, arrays: dict[str, ArrayLike]) -> dict[str, NDArray[Any]]:
+    """Rows of a family's arrays for a world, by name, as their columns hold them; (count, ...) or one value for all."""
     columns = {column.name: column for column in FAMILIES[family]}
     strangers = [name for name in arrays if name not in columns]
     if strangers:
         raise ValueError(f"{family.value}s have no {', '.join(strangers)}; they have {', '.join(columns)}")
-    return {name: _rows(columns[name], values, count) for name, values in arrays.items()}
+    room = room_of(world)
+    rows = {
+        name: values_of(columns[name], values, columns[name].usual_rows(count).shape, room)
+        for name, values in arrays.items()
+    }
+    if family is Family.SPRING:
+        check_ends(rows["particle_a"], rows["particle_b"])
+    return rows
 
 
-def _rows(column: Column, values: ArrayLike, count: int) -> NDArray[Any]:
-    shape = (count,) if column.width == 1 else (count, column.width)
+def values_of(column: Column, values: ArrayLike, shape: tuple[int, ...], room: Room) -> NDArray[Any]:
+    """Values of a column, spread over a shape."""
     kind = np.dtype(column.dtype).kind
     if kind == "f":
-        within = column.within or ANY
+        within = column.within or FINITE
         return floats(column.name, values, shape, within.lowest, within.high)
     if kind == "b":
         return flags(column.name, values, shape)
     array = _plain(column.name, values)
-    if array.dtype.kind not in "iu":
-        raise ValueError(f"{column.name} {shown(values)}: whole numbers are needed")
+    limits = np.iinfo(np.dtype(column.dtype))
+    if array.dtype.kind not in "iu" or np.any((array < limits.min) | (array > limits.max)):
+        raise ValueError(f"{column.name} {shown(values)}: whole numbers are needed, from {limits.min} to {limits.max}")
+    check_whole_numbers(column.name, column, array, room)
     return _spread(column.name, array, shape)
+
+
+def replaced(world: Any, name: str, rows: Any, values: NDArray[Any]) -> None:
+    """Whether values can take the place of rows of an array, where others have to fit to it."""
+    if name not in _TOGETHER:
+        return
+    prefix, names = _TOGETHER[name]
+    arrays = [getattr(world, each).copy() for each in names]
+    arrays[names.index(name)][rows] = values
+    if prefix:
+        check_corners(prefix, arrays, len(world.corner_particle))
+    else:
+        check_ends(*arrays)
 
 
 def _spread(argument: str, array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:

@@ -155,6 +155,8 @@ class Names:
 
     def slot(self, name: str) -> int:
         """The slot of that name. Raises KeyError."""
+        if not isinstance(name, str):
+            raise KeyError(f"name {name!r}: a text is needed"[:80])
         return self._slots[name]
 
     def unused(self, prefix: str, count: int) -> list[str]:
@@ -165,19 +167,24 @@ class Names:
         first = bisect.bisect_left(range(beyond), True, key=lambda number: f"{prefix}{number}" not in self._slots)
         return [f"{prefix}{number}" for number in range(first, first + count)]
 
+    def check(self, names: Sequence[str], count: int) -> None:
+        """Whether the next slots, of `count` in all, can have these names. Raises ValueError."""
+        taken = next((name for name in names if name in self._slots), None)
+        if taken is not None or len(set(names)) != len(names):
+            raise ValueError(f"names: {taken or 'of two new slots'!r} is taken")
+        if len(self.in_order) + len(names) > count:
+            raise ValueError(f"names: {len(names)}, for {count - len(self.in_order)} slots without one")
+
     def append(self, names: Sequence[str]) -> None:
         """Name the next slots. Raises ValueError for a name that is taken."""
-        fresh = {name: len(self.in_order) + index for index, name in enumerate(names)}
-        taken = next((name for name in names if name in self._slots), None)
-        if taken is not None or len(fresh) != len(names):
-            raise ValueError(f"the name {taken or 'of two new slots'!r} is taken")
-        self._slots.update(fresh)
+        self.check(names, len(self.in_order) + len(names))
+        self._slots.update({name: len(self.in_order) + index for index, name in enumerate(names)})
         self.in_order.extend(names)
 
     def add_second(self, slot: int, name: str) -> None:
         """Give a slot a second name. Raises ValueError where that is taken."""
         if name in self._slots:
-            raise ValueError(f"the name {name!r} is taken")
+            raise ValueError(f"name {name!r}: it is taken")
         self._slots[name] = slot
         self._second.append(name)
 

@@ -38,7 +38,7 @@ from sandbox.physics.kits.kit_kernels import (
 from sandbox.physics.marks import ALL_GROUPS, LAW_HOOKE, SOLID_RIGHT
 from sandbox.physics.state import BY_NAME, FINITE, NOT_NEGATIVE, ROLLING_RESISTANCE, SHARE, Family, Range
 from sandbox.physics.water.displacers import HULL_NUMBERS, Water
-from sandbox.physics.world import World
+from sandbox.physics.world import World, grow
 
 FAR = 2**53
 
@@ -316,7 +316,7 @@ def join_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
     check_kit(world, packed, giver, kind)
     counts = packed.counts
     for part, family in _FAMILIES.items():
-        world.append(family, counts[part])
+        grow(world, family, counts[part], {})
     driven = _with_rows(world.actuators, counts)
     limits = world.limits
     if more := len(packed.material_names) - len(world.material_names):

@@ -163,7 +163,7 @@ class BlockOwner:
     def _share_contacts(self, world: World) -> None:
         count = self.inputs.collisions.counts[KEPT]
         self._kept = KeptContacts._make([array[:count] for array in self._kept_room])
-        world.keep_contacts(*self._kept)
+        world.contact_particle, world.contact_feature, world.contact_impulse, world.contact_impact = self._kept
 
 
 def block_of(world: World) -> BlockOwner:

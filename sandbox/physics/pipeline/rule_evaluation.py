@@ -2,8 +2,8 @@
 
 import math
 
-from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
+from sandbox.physics.marks import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.pipeline.block import TICK, WorldBlock
 from sandbox.physics.pipeline.collide import KEPT
 from sandbox.physics.rules import ALL, ANY, NOBODY, NOT, TOUCHES, Terms, Things, measure

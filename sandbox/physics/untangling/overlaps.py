@@ -15,12 +15,13 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
 from sandbox.physics.collision.ghost_vertices import winds
-from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
+from sandbox.physics.collision.narrow_phase import may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, KeptContacts
 from sandbox.physics.geometry.rigid import best_turn, fit_of, rotated
 from sandbox.physics.geometry.segment import closest_on_segment, doubled_area, nearest_share, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.marks import DISC, KINDS, TERRAIN, TIP
 
 # By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
 # other cross.

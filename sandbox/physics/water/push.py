@@ -23,9 +23,9 @@ else it would rise and sink too fast by the change of its velocity in a step.
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP_SHIFT
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.jit import inner_kernel, scalar_kernel
+from sandbox.physics.marks import DISC, KINDS, TERRAIN, TIP_SHIFT
 from sandbox.physics.settings import GRAVITY_X, GRAVITY_Y
 from sandbox.physics.solvers.contact.free_constraints import small_steps
 from sandbox.physics.state import State

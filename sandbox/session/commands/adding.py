@@ -75,20 +75,8 @@ def name_added(world: World) -> None:
     """Name the slots that a restored state brought along as the commands that added them did."""
     for joined in world.joined:
         if joined.first_particle >= len(world.particle_names):
-            name_slots_to(world, joined.first_particle, joined.first_spring)
+            world.name_slots_to(joined.first_particle, joined.first_spring)
             world.name_slots(joined.particle_names, joined.spring_names)
             for name, slot in joined.second_names:
                 world.name_particle(slot, name)
-    name_slots_to(world, world.particle_count, world.spring_count)
-
-
-def name_slots_to(world: World, particle_count: int, spring_count: int) -> None:
-    """Name the slots up to these counts that have no name yet."""
-    if len(world.particle_names) <= world.grab_particle < particle_count:
-        # A level without particles reserves its hands at the first grab, behind what was added until then.
-        name_slots_to(world, world.grab_particle, world.grab_spring)
-        world.name_grabs()
-    world.name_slots(
-        world.particle_naming.unused("+.", particle_count - len(world.particle_names)),
-        world.spring_naming.unused("+:", spring_count - len(world.spring_names)),
-    )
+    world.name_slots_to(world.particle_count, world.spring_count)

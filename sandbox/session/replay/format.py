@@ -29,21 +29,22 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.assembly.joining import join_definition
 from sandbox.level.document.model import Level
+from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.reading.files import file_of, level_data
-from sandbox.physics.constraints import AREA, CONSTRAINT_NAMES
+from sandbox.physics.keeping.arguments import check_corners, check_whole_numbers, room_of
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.state import ALWAYS_STORED, BY_STORED, FAMILIES, OF_RULES, Column, Family
+from sandbox.physics.state import ALWAYS_STORED, BY_STORED, COLUMNS, FAMILIES, OF_RULES, Column, Family
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.terrain import NO_TERRAIN
-from sandbox.physics.world import World, WorldSettings
-from sandbox.session.commands.adding import name_slots_to
+from sandbox.physics.world import World, WorldSettings, grow
 from sandbox.version import __version__
 
 FORMAT = "spring-sandbox/replay"
@@ -55,7 +56,16 @@ TICK_DIGITS = 16
 ARRAY_DIGITS = 6
 # Ticks between two stored states, unless a writer is told otherwise.
 STATE_TICKS = 600
-ARRAY_LIMIT = 64 * 2**20  # [bytes]
+# The most rows that arrays of a state can have: a world holds no more.
+MOST_ROWS = {
+    Family.PARTICLE: PARTICLE_LIMIT + GRAB_COUNT,
+    Family.SPRING: SPRING_LIMIT + GRAB_COUNT,
+    Family.CONSTRAINT: SPRING_LIMIT,
+    Family.CORNER: 3 * SPRING_LIMIT,
+    Family.CONTACT: 3 * SPRING_LIMIT,
+    Family.SETTING: NUMBER_COUNT,
+    Family.HAND: GRAB_COUNT,
+}
 
 _CHAIN_MARK = b', "chain": "'
 _DIGEST_BYTES = 16
@@ -115,20 +125,24 @@ def encode_state(state: World | Snapshot, names: Iterable[str] = tuple(BY_STORED
     return {"state": arrays, "settings": asdict(state.settings)} | ({"joined": joined} if joined else {})
 
 
-def _equipment(world: LevelWorld, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
-    """The equipment of a level's world once bodies of a state line have joined it; grabs: where hands have their slots.
+def _equipment(
+    world: LevelWorld, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int], state: Mapping[str, NDArray[Any]]
+) -> Equipment:
+    """The equipment of a level's world once bodies of a state line have joined it, whose arrays are given.
 
-    Raises ValueError.
+    grabs: where hands have their slots. Raises ValueError.
     """
     world.grab_particle, world.grab_spring = grabs
+    most = [len(state[name]) for name in ("mass", "law")]
     for each in joined:
-        particles, springs = each["particle"] - world.particle_count, each["spring"] - world.spring_count
-        if particles < 0 or springs < 0:
-            raise ValueError("joined: bodies lie over each other")
+        first, present = [each["particle"], each["spring"]], [world.particle_count, world.spring_count]
+        if not all(least <= slot <= limit for least, slot, limit in zip(present, first, most, strict=True)):
+            raise ValueError("joined: bodies lie over each other, or beyond the arrays")
         # What lies between them counts for its names alone.
-        name_slots_to(world, each["particle"], each["spring"])
-        world.append(Family.PARTICLE, particles, particle_active=True, mass=1.0)
-        world.append(Family.SPRING, springs)
+        for family, slot, count in zip((Family.PARTICLE, Family.SPRING), first, present, strict=True):
+            grow(world, family, slot - count, {})
+        world.particle_active[present[0] :], world.mass[present[0] :] = True, 1.0
+        world.name_slots_to(*first)
         join_definition(world, each["definition"])
     return world.equipment
 
@@ -139,32 +153,24 @@ def decode_state(
     """The snapshot of a state line of a level's run; joined: what joined it until then. Raises ValueError, one line."""
     if not ALWAYS_STORED <= set(state) <= set(BY_STORED):
         raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
-    arrays = {name: decode_array(BY_STORED[name], text) for name, text in state.items()}
+    arrays: dict[str, NDArray[Any]] = {}
     world = build_world(level)
-    for family in Family:
-        names = [column.stored for column in FAMILIES[family]]
-        counts = {len(arrays[name]) for name in names if name in arrays}
-        if family in OF_RULES:
-            # The level says how many there are, also where a file is older than they.
-            counts.add(len(getattr(world, FAMILIES[family][0].name)))
-        if len(counts) != 1:
+    for family, columns in FAMILIES.items():
+        names = [column.stored for column in columns]
+        # The level says how many rows rules have, also where a file is older than they.
+        counts = {len(getattr(world, columns[0].name))} if family in OF_RULES else set()
+        for column in columns:
+            if column.stored in state:
+                arrays[column.stored] = decode_array(column, state[column.stored])
+                counts.add(len(arrays[column.stored]))
+            if len(counts) > 1:
+                raise ValueError(f"state: {', '.join(names)} are not equally long")
+        if not counts:
             raise ValueError(f"state: {', '.join(names)} are not equally long")
         # What a file does not have yet is as usual.
-        arrays |= {
-            column.stored: column.usual_rows(*counts) for column in FAMILIES[family] if column.stored not in state
-        }
-    for name in ("particle_a", "particle_b", "corner_particle", "contact_particle"):
-        if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
-            raise ValueError(f"state.{name}: names a particle that does not exist")
-    ends = np.cumsum(arrays["element_corners"], dtype=np.int64)
-    if np.any(arrays["element_corners"] < 3) or (int(ends[-1]) if len(ends) else 0) != len(arrays["corner_particle"]):
-        raise ValueError("state.element_corners: do not add up to the corners that there are")
-    if np.any(arrays["element_first"] != ends - arrays["element_corners"]):
-        raise ValueError("state.element_first: corners do not lie one element after another")
-    if not np.isin(arrays["element_kind"], list(CONSTRAINT_NAMES)).all():
-        raise ValueError("state.element_kind: an element is an area or a bend")
-    if not np.all((arrays["element_kind"] == AREA) | (arrays["element_corners"] == 3)):
-        raise ValueError("state.element_kind: a bend has three corners")
+        arrays |= {column.stored: column.usual_rows(*counts) for column in columns if column.stored not in state}
+    elements = [arrays[f"element_{each}"] for each in ("kind", "first", "corners")]
+    check_corners("state.element", elements, len(arrays["corner_particle"]))
     hands = np.flatnonzero(arrays["material"] == GRAB_MATERIAL)
     if len(hands) not in (0, GRAB_COUNT) or np.any(np.diff(hands) != 1):
         raise ValueError(f"state.material: there are {GRAB_COUNT} hands in a row, or none")
@@ -176,7 +182,14 @@ def decode_state(
         raise ValueError("state.hand_force: there is one of each hand")
     if len(arrays["setting_ticks"]) != NUMBER_COUNT:
         raise ValueError(f"state.setting_ticks: there are {NUMBER_COUNT}, one of each number of the settings")
-    equipment = _equipment(world, joined, (grab_particle, grab_spring))
+    equipment = _equipment(world, joined, (grab_particle, grab_spring), arrays)
+    rows = {family: len(arrays[columns[0].stored]) for family, columns in FAMILIES.items()}
+    room = room_of(world)._replace(rows=rows)
+    try:
+        for column in COLUMNS:
+            check_whole_numbers(f"state.{column.stored}", column, arrays[column.stored], room)
+    except IndexError as error:
+        raise ValueError(str(error)) from None
     driven, values = len(equipment.actuators.names), len(arrays["part_value"])
     if driven != values:
         raise ValueError(f"state.part_value: has {values} values, where there are {driven} driven parts")
@@ -192,14 +205,15 @@ def decode_state(
 
 
 def decode_array(column: Column, text: str) -> Any:
-    """An array of a state line. Raises ValueError."""
-    kind, name = np.dtype(column.dtype), column.stored
+    """An array of a state line, of no more rows than there can be. Raises ValueError."""
+    kind, name, most = np.dtype(column.dtype), column.stored, MOST_ROWS.get(column.family, PARTICLE_LIMIT)
+    limit = most * kind.itemsize * column.width
     try:
         inflater = zlib.decompressobj()
-        data = inflater.decompress(base64.b64decode(text, validate=True), ARRAY_LIMIT)
+        data = inflater.decompress(base64.b64decode(text, validate=True), limit + 1)
     except (binascii.Error, zlib.error, ValueError) as error:
         raise ValueError(f"state.{name}: not base64 of zlib data: {error}") from None
-    if not inflater.eof or len(data) % (kind.itemsize * column.width):
-        raise ValueError(f"state.{name}: cut off, or longer than {ARRAY_LIMIT} bytes")
+    if not inflater.eof or len(data) > limit or len(data) % (kind.itemsize * column.width):
+        raise ValueError(f"state.{name}: cut off, or of more than {most:,} rows")
     array = np.frombuffer(data, dtype=kind.newbyteorder("<")).astype(kind)
     return array.reshape(-1, column.width) if column.width > 1 else array
