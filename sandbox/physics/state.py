@@ -77,7 +77,7 @@ class Column:
     collision derive from it what they keep from step to step (World.derived), so that it is only written by methods of
     World. sparse: no part of the state where all of it is `usual`, so that worlds without what it is for have the
     hashes that they had before there was such a thing. of: what a whole number may be: a slot of a family, of MATERIALS
-    or of FEATURES, or a mark of a range; least: the lowest slot, -1 where that stands for none.
+    or of FEATURES, see OR_NONE, or a mark of a range.
     """
 
     stored: str
@@ -92,7 +92,6 @@ class Column:
     sparse: bool
     usual: float
     of: "Family | range | str | None"
-    least: int
     name: str = field(default="", init=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -115,18 +114,18 @@ class Column:
 def _array(
     stored: str, family: Family, dtype: type[Scalar], unit: str, meaning: str, *, width: int = 1,
     within: Range | None = None, guarded: bool = False, topology: bool = False, sparse: bool = False, usual: float = 0,
-    of: Family | range | str | None = None, least: int = 0,
+    of: Family | range | str | None = None,
 ) -> NDArray[Scalar]:  # fmt: skip
     """A line of the table, which a type checker takes for the array that an instance holds under that name."""
-    return cast(
-        Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual, of, least)
-    )
+    return cast(Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual, of))
 
 
 # What whole numbers are slots of that are no family: materials, which are no arrays; and what a contact touched, see
 # FEATURE_KINDS.
 MATERIALS, FEATURES = "material", "feature"
 P, S, E, C, A, T, H, G, R, N, B, L, K, D = Family
+# Of these -1 stands for none.
+OR_NONE = (MATERIALS, Family.COUNTER)
 F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
@@ -172,7 +171,7 @@ class StateArrays:
     law = _array("law", S, I8, "", "LAW_NISSEN, LAW_HOOKE or LAW_HAND", topology=True, of=LAWS)
     hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", within=NOT_NEGATIVE, guarded=True)
     hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", within=NOT_NEGATIVE, guarded=True)
-    material = _array("material", S, I32, "", "index into material_names, -1 = of a hand", topology=True, of=MATERIALS, least=-1)
+    material = _array("material", S, I32, "", "index into material_names, -1 = of a hand", topology=True, of=MATERIALS)
     spring_active = _array("spring_active", S, BOOL, "", "whether it acts; false: cut, broken, or of a hand that holds nothing", topology=True)
     impulse = _array("impulse", S, F64, "N s", "impulse for the warm start of the iterative solver", width=2)
     tension = _array("tension", S, F64, "N s", "its pulling impulse of the last step, with \"auto\" substeps of the whole tick, for the direct solver")
@@ -191,7 +190,7 @@ class StateArrays:
     constraint_rest = _array("element_rest", E, F64, "m^2 or 1", "wanted area and area of the form; or cosine and sine of the angle at rest", width=2, within=FINITE, guarded=True)
     constraint_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", within=SHARE, guarded=True)
     constraint_damping = _array("element_damping", E, F64, "1", "Cd of a tick", within=SHARE, guarded=True)
-    constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own", of=MATERIALS, least=-1)
+    constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own", of=MATERIALS)
     constraint_active = _array("element_active", E, BOOL, "", "whether it acts; false once a spring along its sides is cut or broken", topology=True)
     constraint_lowest_mode = _array("element_lowest_mode", E, F64, "1", "as lowest_mode of a spring", within=NOT_NEGATIVE, guarded=True, sparse=True)
     constraint_stiffness_now = _array("element_stiffness_now", E, F64, "1", "as stiffness_now of a spring", sparse=True)
@@ -231,7 +230,7 @@ class StateArrays:
     key_down = _array("key_down", K, BOOL, "", "whether it is held", sparse=True)
 
     deed_refused = _array("deed_refused", D, BOOL, "", "whether the level lets no hand give it", sparse=True)
-    deed_budget = _array("deed_budget", D, I32, "", "the counter that says how often hands may still give it; -1: as often as they like", sparse=True, usual=-1, of=N, least=-1)
+    deed_budget = _array("deed_budget", D, I32, "", "the counter that says how often hands may still give it; -1: as often as they like", sparse=True, usual=-1, of=N)
     # fmt: on
     tick: int
 

@@ -9,7 +9,15 @@ from numpy.typing import ArrayLike, NDArray
 from sandbox.physics.arrays import Floats, SlotRows, Slots, empty
 from sandbox.physics.breaking import StrainLimits, unlimited
 from sandbox.physics.commands.command import PROGRAM, Commanded, solve
-from sandbox.physics.commands.command_table import KINDS, OF_HANDS, OF_SOLVER, OF_TOPOLOGY, carry_out, numbers_of
+from sandbox.physics.commands.command_table import (
+    KINDS,
+    OF_HANDS,
+    OF_SOLVER,
+    OF_TOPOLOGY,
+    carry_out,
+    check_fields,
+    numbers_of,
+)
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraints_of, rests_of
 from sandbox.physics.driving import Actuators, drive_muscles, drives_of
 from sandbox.physics.jit import bundle
@@ -21,7 +29,7 @@ from sandbox.physics.rules import Rules
 from sandbox.physics.sanitise import Containment
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.softness.kernels.firm import FormTable
-from sandbox.physics.state import COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
+from sandbox.physics.state import ABSURD, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS
 
@@ -120,7 +128,8 @@ class World(StateArrays):
         column = arguments.column_of("name", name)
         array = getattr(self, name)
         rows = arguments.rows_at("slots", slots, len(array))
-        checked = arguments.values_of(column, values, array[rows].shape, arguments.room_of(self))
+        said, room = f"values of {name}", arguments.room_of(self)
+        checked = arguments.values_of(said, column, values, array[rows].shape, room)
         arguments.replaced(self, name, rows, checked)
         array[rows] = checked
         if name in self.good:
@@ -289,31 +298,17 @@ class World(StateArrays):
         out of its range (docs/state.md), and other shapes.
         """
         count, first = len(arguments.texts("names", names)), self.particle_count
-        masses, is_pinned = arguments.floats("mass", mass, (count,)), arguments.flags("pinned", pinned, (count,))
-        if not np.all(masses > 0.0):
-            raise ValueError("every particle has a mass above 0 kg")
+        masses = arguments.floats("mass", mass, (count,), 1.0 / ABSURD)
+        is_pinned = arguments.flags("pinned", pinned, (count,))
         places = arguments.floats("position", position, (count, 2))
         velocities = np.where(is_pinned[:, None], 0.0, arguments.floats("velocity", velocity, (count, 2)))
         spins = np.where(is_pinned, 0.0, arguments.floats("spin", others.get("spin", 0.0), (count,)))
         columns = others | dict(
-            position=places,
-            origin=places,
-            velocity=velocities,
-            slow_velocity=velocities,
-            energy_bank=BANK_UNOPENED,
-            mass=masses,
-            inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
-            radius=radius,
-            gravity_scale=gravity_scale,
-            particle_active=True,
-            unmoved=True,
-            friction=friction,
-            restitution=restitution,
-            owner=-1 - first - np.arange(count) if owner is None else owner,
-            group=group,
-            collides=collides,
-            spin=spins,
-        )
+            position=places, origin=places, velocity=velocities, slow_velocity=velocities, energy_bank=BANK_UNOPENED,
+            mass=masses, inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses), radius=radius, spin=spins,
+            gravity_scale=gravity_scale, particle_active=True, unmoved=True, friction=friction, restitution=restitution,
+            owner=-1 - first - np.arange(count) if owner is None else owner, group=group, collides=collides,
+        )  # fmt: skip
         rows = arguments.rows_of(self, Family.PARTICLE, count, columns)
         self.particle_naming.append(names)
         grow(self, Family.PARTICLE, count, rows)
@@ -368,7 +363,7 @@ class World(StateArrays):
         slots = arguments.slot_rows("corners", corners, PARTICLES, self.particle_count)
         count, size = slots.shape
         if (arguments.whole_from("kind", kind, AREA, BEND) == BEND and size != 3) or size < 3:
-            raise ValueError("corners: an area has three or more, a bend three")
+            raise ValueError("corners: an area has three corners or more, a bend three")
         if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
@@ -437,6 +432,7 @@ class World(StateArrays):
 
         values: its fields, by name. Raises IndexError, ValueError and RefusedCommand; nothing is changed then.
         """
+        check_fields(name, giver, values)
         if name == "grab" and self.grab_particle < 0:
             # Nothing is left of a hold that cannot be, no slots of hands either.
             arguments.slot("grab", values["grab"], HANDS, GRAB_COUNT)
@@ -494,6 +490,7 @@ class World(StateArrays):
 
         Muscles get the rest lengths that they have at the present tick.
         """
+        arguments.check_driven(self, arguments.of_kind("driven", driven, Actuators))
         checked = [arguments.number("values", value, -1.0, 1.0) for value in arguments.listed("values", values)]
         if len(checked) != len(driven.names):
             raise ValueError(f"values of {len(checked)} parts: {len(driven.names)} are driven")
@@ -541,11 +538,8 @@ class World(StateArrays):
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
-        for names, naming, count in (
-            (arguments.texts("particles", particles), self.particle_naming, self.particle_count),
-            (arguments.texts("springs", springs), self.spring_naming, self.spring_count),
-        ):
-            naming.check(names, count)
+        self.particle_naming.check("particles", arguments.texts("particles", particles), self.particle_count)
+        self.spring_naming.check("springs", arguments.texts("springs", springs), self.spring_count)
         self.particle_naming.append(particles)
         self.spring_naming.append(springs)
 

@@ -19,7 +19,7 @@ from sandbox.physics.arrays import Slots
 from sandbox.physics.commands.command_table import CODES
 from sandbox.physics.rules import BOX, CIRCLE, NOBODY, POLYGON, Rules, Terms, Things, Zones
 from sandbox.physics.state import Family
-from sandbox.physics.world import World
+from sandbox.physics.world import World, grow
 
 _KINDS = {
     "x": rules.CENTRE_X, "y": rules.CENTRE_Y, "speed": rules.SPEED, "distance": rules.DISTANCE,
@@ -82,7 +82,7 @@ def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
 
 
 def _append(world: World, family: Family, names: Sequence[str], **arrays: ArrayLike) -> None:
-    world.append(family, len(names), **arrays)
+    grow(world, family, len(names), arrays)
     world.row_names[family] += tuple(names)
 
 

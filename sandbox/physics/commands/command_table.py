@@ -20,8 +20,10 @@ from sandbox.physics.keeping.arguments import (
     no_slot,
     number,
     point,
+    shown,
     ticks,
     whole,
+    whole_from,
     whole_numbers,
 )
 from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
@@ -76,6 +78,8 @@ _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "subst
 # Numbers that a kernel writes, and how many they are: by what the host is to multiply kept impulses of contacts; the
 # nearest firmness that can be had.
 ANSWERS = {"contacts": 1, "nearest": 2}
+# What a world says itself of every command, if nobody else does.
+_OF_WORLD = {"first_cursor", "first_spring", "tick_rate", "materials", "duration"}
 # Slots that are true or false.
 _FLAGS = frozenset({"down", "at_rest", "whole"})
 # Numbers that are pairs; ranges of others, where they have any, and of values.
@@ -183,6 +187,16 @@ def carry_out(pointer: Any, giver: int, name: str, values: Mapping[str, Any], wo
     if result < 0:
         raise _fault(kind, -result, values, numbers.tolist(), world)
     return numbers
+
+
+def check_fields(name: str, giver: int, values: Mapping[str, Any]) -> None:
+    """Whether that is a command of KINDS and somebody who gives it, with all that it is told. Raises ValueError."""
+    whole_from("giver", giver, 0, command.PROGRAM)
+    if not isinstance(name, str) or name not in KINDS:
+        raise ValueError(f"name {shown(name)}: there is no such command; there are {', '.join(KINDS)}")
+    needed = {each.lstrip("?") for each in (*KINDS[name].slots, *KINDS[name].numbers)} - ANSWERS.keys() - _OF_WORLD
+    if missing := sorted(needed - values.keys()):
+        raise ValueError(f"{', '.join(missing)}: {name} needs a value")
 
 
 def numbers_of(name: str, values: Mapping[str, Any]) -> Floats:

@@ -12,8 +12,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.constraints import BEND
+from sandbox.physics.driving import Actuators
 from sandbox.physics.marks import DISC, KINDS, LONGEST_RAMP, TERRAIN, TIP, TIP_SHIFT
-from sandbox.physics.state import BY_NAME, FAMILIES, FEATURES, FINITE, MATERIALS, Column, Family, StateArrays
+from sandbox.physics.state import (
+    ABSURD,
+    BY_NAME,
+    FAMILIES,
+    FEATURES,
+    FINITE,
+    MATERIALS,
+    OR_NONE,
+    Column,
+    Family,
+    StateArrays,
+)
 
 # Words for the rows of families, where a slot of one is asked for.
 PARTICLES, SPRINGS, CONSTRAINTS = "particles", "springs", "constraints"
@@ -159,7 +171,7 @@ def room_of(world: Any) -> Room:
 
 def check_whole_numbers(argument: str, column: Column, values: NDArray[Any], room: Room) -> None:
     """Refuse slots that are not there, and marks that mean nothing, in an array of a column."""
-    of, least = column.of, column.least
+    of, least = column.of, -1 if column.of in OR_NONE else 0
     if of is None or not values.size:
         return
     if isinstance(of, range):
@@ -187,6 +199,20 @@ def _touchable(feature: NDArray[np.integer], room: Room) -> NDArray[np.bool_]:
         counts[kind == each] = count
     there: NDArray[np.bool_] = (number >= 0) & (number < counts) & ((kind != TIP) | (number % TIP_SHIFT < springs))
     return there
+
+
+def check_driven(world: Any, driven: Actuators) -> None:
+    """Refuse driven parts of a world whose slots are not there."""
+    muscles, hydraulics, motors, parts = driven.muscles, driven.hydraulics, driven.motors, len(driven.names)
+    for values, rows, count in (
+        (muscles.spring, SPRINGS, world.spring_count),
+        (hydraulics.spring, SPRINGS, world.spring_count),
+        (motors.hub, PARTICLES, world.particle_count),
+        (motors.rim, PARTICLES, world.particle_count),
+        (hydraulics.part, PARTS, parts),
+        (motors.part, PARTS, parts),
+    ):
+        slots("driven", values, rows, count)
 
 
 def check_ends(a: NDArray[np.integer], b: NDArray[np.integer]) -> None:
@@ -220,7 +246,7 @@ def active_particles(world: StateArrays, argument: str, values: Any) -> Slots:
     return found
 
 
-def number(argument: str, value: Any, least: float = -math.inf, most: float = math.inf) -> float:
+def number(argument: str, value: Any, least: float = -ABSURD, most: float = ABSURD) -> float:
     """A finite number from least to most."""
     if isinstance(value, bool) or not isinstance(value, _NUMBERS):
         raise ValueError(f"{argument} {shown(value)}: a number is needed")
@@ -228,8 +254,8 @@ def number(argument: str, value: Any, least: float = -math.inf, most: float = ma
         found = float(value)
     except OverflowError:
         found = math.inf
-    if not least <= found <= most or not math.isfinite(found):
-        raise ValueError(f"{argument} {shown(value)}: {_range_of(least, most)} is needed")
+    if not least <= found <= most:
+        raise ValueError(f"{argument} {shown(value)}: a number from {least:g} to {most:g} is needed")
     return found
 
 
@@ -241,17 +267,18 @@ def point(argument: str, value: Any) -> tuple[float, float]:
 
 
 def floats(
-    argument: str, values: ArrayLike, shape: tuple[int, ...], least: float = -math.inf, most: float = math.inf
+    argument: str, values: ArrayLike, shape: tuple[int, ...], least: float = -ABSURD, most: float = ABSURD
 ) -> Floats:
     """Finite numbers from least to most, spread over a shape."""
     array = _numbers(argument, values)
-    is_bad = ~(np.isfinite(array) & (array >= least) & (array <= most))
+    is_bad = ~((array >= least) & (array <= most))
     if is_bad.any():
-        raise ValueError(f"{argument} {shown(float(array[is_bad].flat[0]))}: {_range_of(least, most)} is needed")
+        value = shown(float(array[is_bad].flat[0]))
+        raise ValueError(f"{argument} {value}: a number from {least:g} to {most:g} is needed")
     return _spread(argument, array.astype(np.float64), shape)
 
 
-def floats_or(argument: str, values: ArrayLike, usual: Floats, least: float = -math.inf) -> Floats:
+def floats_or(argument: str, values: ArrayLike, usual: Floats, least: float = -ABSURD) -> Floats:
     """Finite numbers of at least `least`, with `usual` in place of each NaN."""
     array = _numbers(argument, values)
     is_left_out = np.isnan(array)
@@ -284,7 +311,7 @@ def column_of(argument: str, name: Any) -> Column:
 
 def added_rows(world: Any, family: Any, count: Any, arrays: dict[str, ArrayLike]) -> dict[str, NDArray[Any]]:
     """Rows that a program appends to the arrays of a family, see `rows_of`; usual ones count too."""
-    if family not in _ADDABLE:
+    if not isinstance(family, Family) or family not in _ADDABLE:
         raise ValueError(f"family {shown(family)}: particles and springs are appended, others come with what they are")
     whole_from("count", count, 0, MOST_ADDED)
     usual = {column.name: column.usual for column in FAMILIES[family] if column.of or column.within}
@@ -299,7 +326,7 @@ def rows_of(world: Any, family: Family, count: int, arrays: dict[str, ArrayLike]
         raise ValueError(f"{family.value}s have no {', '.join(strangers)}; they have {', '.join(columns)}")
     room = room_of(world)
     rows = {
-        name: values_of(columns[name], values, columns[name].usual_rows(count).shape, room)
+        name: values_of(name, columns[name], values, columns[name].usual_rows(count).shape, room)
         for name, values in arrays.items()
     }
     if family is Family.SPRING:
@@ -307,20 +334,24 @@ def rows_of(world: Any, family: Family, count: int, arrays: dict[str, ArrayLike]
     return rows
 
 
-def values_of(column: Column, values: ArrayLike, shape: tuple[int, ...], room: Room) -> NDArray[Any]:
+def values_of(argument: str, column: Column, values: ArrayLike, shape: tuple[int, ...], room: Room) -> NDArray[Any]:
     """Values of a column, spread over a shape."""
     kind = np.dtype(column.dtype).kind
     if kind == "f":
         within = column.within or FINITE
-        return floats(column.name, values, shape, within.lowest, within.high)
+        # What a number is divided by is not so small that nothing finite comes of it.
+        found = floats(argument, values, shape, 1.0 / within.high if within.is_above else within.low, within.high)
+        if column.name == "inverse_mass" and np.any((found > 0.0) & (found < 1.0 / within.high)):
+            raise ValueError(f"{argument}: 0 or a number of at least {1.0 / within.high:g} is needed")
+        return found
     if kind == "b":
-        return flags(column.name, values, shape)
-    array = _plain(column.name, values)
+        return flags(argument, values, shape)
+    array = _plain(argument, values)
     limits = np.iinfo(np.dtype(column.dtype))
     if array.dtype.kind not in "iu" or np.any((array < limits.min) | (array > limits.max)):
-        raise ValueError(f"{column.name} {shown(values)}: whole numbers are needed, from {limits.min} to {limits.max}")
-    check_whole_numbers(column.name, column, array, room)
-    return _spread(column.name, array, shape)
+        raise ValueError(f"{argument} {shown(values)}: whole numbers are needed, from {limits.min} to {limits.max}")
+    check_whole_numbers(argument, column, np.atleast_1d(array), room)
+    return _spread(argument, array, shape)
 
 
 def replaced(world: Any, name: str, rows: Any, values: NDArray[Any]) -> None:
@@ -355,9 +386,3 @@ def _numbers(argument: str, values: ArrayLike) -> NDArray[Any]:
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{argument} {shown(values)}: numbers are needed")
     return array
-
-
-def _range_of(least: float, most: float) -> str:
-    if least == -math.inf:
-        return "a finite number"
-    return f"a number of at least {least:g}" if most == math.inf else f"a number from {least:g} to {most:g}"

@@ -155,8 +155,8 @@ class Names:
 
     def slot(self, name: str) -> int:
         """The slot of that name. Raises KeyError."""
-        if not isinstance(name, str):
-            raise KeyError(f"name {name!r}: a text is needed"[:80])
+        if not isinstance(name, str) or name not in self._slots:
+            raise KeyError(f"name {name!r:.60}: there is none")
         return self._slots[name]
 
     def unused(self, prefix: str, count: int) -> list[str]:
@@ -167,17 +167,17 @@ class Names:
         first = bisect.bisect_left(range(beyond), True, key=lambda number: f"{prefix}{number}" not in self._slots)
         return [f"{prefix}{number}" for number in range(first, first + count)]
 
-    def check(self, names: Sequence[str], count: int) -> None:
+    def check(self, argument: str, names: Sequence[str], count: int) -> None:
         """Whether the next slots, of `count` in all, can have these names. Raises ValueError."""
         taken = next((name for name in names if name in self._slots), None)
         if taken is not None or len(set(names)) != len(names):
-            raise ValueError(f"names: {taken or 'of two new slots'!r} is taken")
+            raise ValueError(f"{argument}: {taken or 'of two new slots'!r} is taken")
         if len(self.in_order) + len(names) > count:
-            raise ValueError(f"names: {len(names)}, for {count - len(self.in_order)} slots without one")
+            raise ValueError(f"{argument}: {len(names)} names for {count - len(self.in_order)} slots without one")
 
     def append(self, names: Sequence[str]) -> None:
         """Name the next slots. Raises ValueError for a name that is taken."""
-        self.check(names, len(self.in_order) + len(names))
+        self.check("names", names, len(self.in_order) + len(names))
         self._slots.update({name: len(self.in_order) + index for index, name in enumerate(names)})
         self.in_order.extend(names)
 
