@@ -11,6 +11,9 @@ import numpy as np
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
+from sandbox.physics.arrays import Floats
+from sandbox.physics.keeping.arguments import all_of_kind, of_kind, text, whole, whole_from
+from sandbox.physics.marks import LONGEST_RAMP
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
 from sandbox.session.actions import RuleActions
@@ -25,6 +28,9 @@ from sandbox.session.transaction import Interrupted, all_or_nothing
 
 # Ticks between two calls of `progress` while re-stepping: few, as a tick of a full world takes a tenth of a second.
 PROGRESS_TICKS = 4
+
+# The highest number of a gesture: files hold no more digits.
+MOST_GESTURE = 2**53
 
 Recorded = TypeVar("Recorded")
 
@@ -49,16 +55,13 @@ class Session:
         self.level = level
         self.world = build_world(level)
         self._actions = RuleActions(level, self.world)
+        origin = self.world.origin.copy()
         if start is not None:
-            own = self.world.origin
-            if not np.array_equal(start.arrays["origin"][: len(own)], own):
-                raise ValueError(f"the snapshot to start from is of another level than {level.name!r}")
-            restore(self.world, start)
-            name_added(self.world)
+            self._put_back(self._own("start", start, origin))
         self.refusals: list[str] = []
         self.events: list[str] = []
         self.progress: Callable[[int, int], None] | None = None
-        self._script = iter(script)
+        self._script = all_of_kind("script", script, ScriptLine)
         self.history = RunHistory(Keyframes(Keyframe(0, take(self.world))), self.tick)
         self.history.scripted = next((line for line in self._script if line.tick >= self.tick), None)
         self._pending: deque[tuple[Command, int]] = deque()
@@ -129,7 +132,7 @@ class Session:
         """
         if not isinstance(command, Command):
             raise TypeError(f"submit takes a command, such as Grab(...), not {command!r}; do takes a record or a type")
-        self._pending.append((command, self.new_gesture() if gesture is None else gesture))
+        self._pending.append((command, self._gesture(gesture)))
 
     def do(self, command: Command | dict[str, Any] | str, gesture: int | None = None, **fields: Any) -> Command:
         """Apply a command now, before the next step: one, its record, or its type in files with its fields.
@@ -139,19 +142,20 @@ class Session:
         What was submitted before is applied first. Returns the command with slots in place of names. Raises
         CommandError, with nothing changed, where it cannot be carried out.
         """
+        number = self._gesture(gesture)
         self.apply_pending()
         if not isinstance(command, Command):
             record = {"type": command, **fields} if isinstance(command, str) else command
             command = from_record(record, self.world)
         elif fields:
             raise TypeError(f"fields belong to a command's type, as in do({command.type!r}, ...)")
-        applied = self._apply(command, self.new_gesture() if gesture is None else gesture)
+        applied = self._apply(command, number)
         self.history.scripted = None
         return applied
 
     def attempt(self, record: dict[str, Any], gesture: int) -> bool:
         """Carry a command of a script out before the next tick; whether that was possible."""
-        refusals = len(self.refusals)
+        refusals, gesture = len(self.refusals), self._gesture(gesture)
         try:
             command = from_record(record, self.world)
         except CommandError:
@@ -221,7 +225,7 @@ class Session:
 
         Raises ValueError out of that range, or while recording.
         """
-        if not self.history.keyframes.first.tick <= tick <= self.history.last_tick:
+        if not self.history.keyframes.first.tick <= whole("tick", tick) <= self.history.last_tick:
             raise ValueError(f"tick {tick} is outside {self.history.keyframes.first.tick}..{self.history.last_tick}")
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
@@ -234,7 +238,7 @@ class Session:
 
     def kept_before(self, tick: int) -> int:
         """The last tick up to a tick whose state is kept: from there `seek` steps again."""
-        return self.history.keyframes.before(tick).tick
+        return self.history.keyframes.before(whole("tick", tick)).tick
 
     def adopt(self, state: Snapshot) -> None:
         """Go to a state that a recording of this very run holds, without stepping there, and keep it.
@@ -244,7 +248,7 @@ class Session:
         what is not there.
         """
         before = take(self.world)
-        self._put_back(state)
+        self._put_back(self._own("state", state))
         if self.tick > self.history.last_tick:
             try:
                 self._pass_script()
@@ -284,9 +288,15 @@ class Session:
 
         Raises CommandError where a command names what is not there.
         """
-        lines = list(lines)
-        self._put_back(state)
-        self._enter(lines, [from_record(line.record, self.world) for line in lines])
+        lines = list(all_of_kind("lines", lines, ScriptLine))
+        before = take(self.world)
+        self._put_back(self._own("state", state))
+        try:
+            commands = [from_record(line.record, self.world) for line in lines]
+        except CommandError:
+            self._put_back(before)
+            raise
+        self._enter(lines, commands)
         self.history.keyframes.keep(Keyframe(self.history.next_order, take(self.world)))
 
     def step_again(self, state: Snapshot) -> None:
@@ -295,7 +305,7 @@ class Session:
         What comes of it is told by the world alone: no state is kept, and nothing is recorded.
         """
         tick = self.tick
-        self._put_back(state)
+        self._put_back(self._own("state", state))
         self.history.keyframes.note_return()
         self._follow(self.history.first_of(state.tick), tick, sought=False)
 
@@ -303,7 +313,7 @@ class Session:
         """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from
         there to the last tick. Neither run changes the other.
         """
-        first = self.history.keyframes.before(tick)
+        first = self.history.keyframes.before(whole("tick", tick))
         twin = Session(self.level, start=first.snapshot)
         twin.history = self.history.onward(first)
         twin._follow(0, first.tick)
@@ -311,6 +321,7 @@ class Session:
 
     def keyframes(self, first: int, last: int) -> list[Snapshot]:
         """The states of ticks first..last that are kept, a few each second or less."""
+        first, last = whole("first", first), whole("last", last)
         return [kept.snapshot for kept in self.history.keyframes if first <= kept.tick <= last]
 
     @property
@@ -333,23 +344,25 @@ class Session:
         endings = (entry.command.ending(self.world) for entry in self.history.begun(self.tick))
         return [ending for ending in endings if ending is not None]
 
-    def record_to(self, path: Path, state_ticks: int = STATE_TICKS) -> None:
+    def record_to(self, path: Path | str, state_ticks: int = STATE_TICKS) -> None:
         """Record this run to a file, from the level's start: the run until now is played again into it.
 
         state_ticks: from one stored state to the next; from each the recording can be verified, and each takes room.
         Overwrites the file. Raises OSError where it cannot be written, ValueError for a run that began in the middle.
         """
+        whole_from("state_ticks", state_ticks, 1, LONGEST_RAMP)
+        path = _path(path)
         self.stop_recording()
         twin = self._recorded(path, state_ticks)
         self.history.drop_future(self.tick)
         self._recorder = twin._recorder
 
-    def save_to(self, path: Path) -> Path | None:
+    def save_to(self, path: Path | str) -> Path | None:
         """Write the run up to the present tick as a recording of its own; this run stays as it is, what follows too.
 
         Its file, or None where its end cannot be written. Overwrites the file. Raises as `record_to` does.
         """
-        twin = self._recorded(path, STATE_TICKS)
+        twin = self._recorded(_path(path), STATE_TICKS)
         saved = twin.stop_recording()
         self.refusals.extend(twin.refusals)
         return saved
@@ -458,6 +471,17 @@ class Session:
 
         return restore_all
 
+    def _gesture(self, gesture: int | None) -> int:
+        """A gesture's number, or a new one. Raises ValueError."""
+        return self.new_gesture() if gesture is None else whole_from("gesture", gesture, 0, MOST_GESTURE)
+
+    def _own(self, argument: str, state: Snapshot, origin: Floats | None = None) -> Snapshot:
+        """A state of this level's world, whose particles begin at origin. Raises ValueError for another."""
+        own = self.history.keyframes.first.snapshot.origin if origin is None else origin
+        if not np.array_equal(of_kind(argument, state, Snapshot).origin[: len(own)], own):
+            raise ValueError(f"{argument}: the snapshot is of another level than {self.level.name!r}")
+        return state
+
     def _put_back(self, state: Snapshot) -> None:
         restore(self.world, state)
         name_added(self.world)
@@ -541,7 +565,7 @@ class Session:
         """
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
-        if branch not in self.history.branches:
+        if of_kind("branch", branch, Branch) not in self.history.branches:
             raise ValueError("that branch is gone: only the last ones are kept")
         with self._all_or_nothing():
             self._rewind(self.history.return_to(branch))
@@ -558,3 +582,8 @@ class Session:
     def _report_progress(self, done: int, total: int) -> None:
         if self.progress is not None and done % PROGRESS_TICKS == 0:
             self.progress(done, total)
+
+
+def _path(path: Path | str) -> Path:
+    """A path, or a text that says one. Raises ValueError."""
+    return path if isinstance(path, Path) else Path(text("path", path))

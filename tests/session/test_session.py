@@ -527,5 +527,5 @@ def test_a_session_its_world_and_a_snapshot_say_what_they_are_in_a_line(tmp_path
 
 def test_a_snapshot_of_another_level_is_refused():
     other = Session(load_level("newtons_cradle")).snapshot()
-    with pytest.raises(ValueError, match="the snapshot to start from is of another level than 'Test rope'"):
+    with pytest.raises(ValueError, match="start: the snapshot is of another level than 'Test rope'"):
         Session(rope_level(), start=other)

@@ -4,7 +4,7 @@ Every fault raises IndexError, for a slot that is not there, or ValueError; its 
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -73,8 +73,17 @@ def whole_from(argument: str, value: Any, least: int, most: int) -> int:
 def of_kind(argument: str, value: Any, kind: type[Instance]) -> Instance:
     """A value of a class."""
     if not isinstance(value, kind):
-        raise ValueError(f"{argument} {shown(value)}: a {kind.__name__} is needed")
+        raise ValueError(f"{argument} {shown(value)}: one of {kind.__name__} is needed")
     return value
+
+
+def all_of_kind(argument: str, values: Any, kind: type[Instance]) -> Iterator[Instance]:
+    """The values of a class that are iterated, each looked at as it comes."""
+    try:
+        each = iter(values)
+    except TypeError:
+        raise ValueError(f"{argument} {shown(values)}: any number of {kind.__name__} are needed") from None
+    return (of_kind(argument, value, kind) for value in each)
 
 
 def text(argument: str, value: Any) -> str:
