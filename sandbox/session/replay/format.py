@@ -63,7 +63,6 @@ MOST_ROWS = {
     Family.CONSTRAINT: SPRING_LIMIT,
     Family.CORNER: 3 * SPRING_LIMIT,
     Family.CONTACT: 3 * SPRING_LIMIT,
-    Family.SETTING: NUMBER_COUNT,
     Family.HAND: GRAB_COUNT,
 }
 
