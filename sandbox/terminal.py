@@ -3,6 +3,7 @@
 import argparse
 import io
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -18,6 +19,8 @@ RATE_LIMIT = 60.0
 PROCESS_LIMIT = 256
 # Longest number of ticks, in digits, for the same reason.
 COUNT_DIGITS = 12
+# What people are not told whole: links to runs have thousands of letters.
+_LONG_WORD = re.compile(r"(scene=\S{16}(?=\S{40})|\S{60}(?=\S{200}))\S+")
 
 
 def _number(low: float, high: float, text: str) -> float:
@@ -146,9 +149,14 @@ def give_up_output() -> None:
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def shortened(text: str) -> str:
+    """A text for people, with the beginning of links to runs, and of other words as long as they."""
+    return _LONG_WORD.sub(r"\1...", text)
+
+
 def tell(lines: Iterable[str]) -> None:
     """Print lines on standard error."""
-    for line in lines:
+    for line in map(shortened, lines):
         # A file's name may hold anything, a new line or a terminal's control codes too.
         print("".join(c if c.isprintable() else repr(c)[1:-1] for c in line), file=sys.stderr)
 

@@ -3,6 +3,7 @@
 import argparse
 import gc
 import os
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -45,6 +46,8 @@ COMMANDS: tuple[Subcommand[Any], ...] = tuple(
         open_link, take_home, export, bring, format, edit, schema,
     )
 )  # fmt: skip
+# Values of options that begin as numbers below zero do, such as -1,-1,1,1.
+_BELOW_ZERO = re.compile(r"-(\d|\.\d|inf)")
 # What the program does where no command is named.
 USUAL = ("play",)
 # Python searches for garbage after this many new objects, in place of 700: what is imported stays, and looking through
@@ -91,7 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str]) -> int:
-    parsed = _parser().parse_args(arguments)
+    parsed = _parser().parse_args(_joined(arguments))
     gone = missing_folder()
     if gone:
         return _refuse([gone])
@@ -100,6 +103,17 @@ def _run(arguments: Sequence[str]) -> int:
         return code
     except Refused as refusal:
         return _refuse(refusal.faults)
+
+
+def _joined(arguments: Sequence[str]) -> list[str]:
+    """Arguments, a value that begins with a minus in one with its option: it would be taken for another option."""
+    joined: list[str] = []
+    for word in arguments:
+        if _BELOW_ZERO.match(word) and joined and joined[-1].startswith("--") and "=" not in joined[-1]:
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _refuse(faults: Iterable[str]) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from sandbox.cli.base.command import Subcommand, argument, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, Refused, level_or_replay
 from sandbox.cli.base.running import PAGE, watching
-from sandbox.terminal import Progress, interrupted_between_ticks, seconds
+from sandbox.terminal import Progress, interrupted_between_ticks, seconds, shortened
 
 if TYPE_CHECKING:
     from sandbox.session.compare.comparison import ComparedRun, RunDifference
@@ -37,7 +37,9 @@ def diff(options: DiffOptions) -> int:
     from sandbox.session.replay.recording import ReplayError
 
     _check_output(options.output)
-    first, second = (ComparedRun(name, *level_or_replay(name, retold=True)) for name in (options.first, options.second))
+    first, second = (
+        ComparedRun(shortened(name), *level_or_replay(name, retold=True)) for name in (options.first, options.second)
+    )
     if options.output and (first.is_old or second.is_old):
         raise Refused(f"{options.output}: a recording of another physics version cannot be played or drawn here")
     rate = first.level.settings.tick_rate

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.base.command import Subcommand, arguments, flag, length_in_seconds, length_in_ticks
-from sandbox.cli.base.inputs import EXIT_OK, Refused, is_replay, level_of
-from sandbox.terminal import Progress, interrupted_between_ticks
+from sandbox.cli.base.inputs import EXIT_OK, Refused, is_replay, level_of, recording_of
+from sandbox.terminal import Progress, interrupted_between_ticks, shortened
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
@@ -33,7 +33,7 @@ class InfoOptions:
 def info(options: InfoOptions) -> int:
     """Print what recordings hold, and what happened in them when. Raises Refused."""
     for number, name in enumerate(options.files):
-        replay = _recording(name) if is_replay(name) else None
+        replay = recording_of(name, partial=True, retold=True) if is_replay(name) else None
         level = level_of(name) if replay is None else replay.level
         run, ticks, found = _events(options, name, level, replay)
         if options.json:
@@ -43,17 +43,6 @@ def info(options: InfoOptions) -> int:
             print()
         print("\n".join([*_header(name, run, replay, ticks), *_list(options, run, found)]))
     return EXIT_OK
-
-
-def _recording(name: str) -> "Replay":
-    """A recording, also one that is cut off or of another physics version. Raises Refused."""
-    from sandbox.session.replay.reader import read_replay
-    from sandbox.session.replay.recording import ReplayError
-
-    try:
-        return read_replay(name, partial=True, retold=True)
-    except ReplayError as error:
-        raise Refused(*error.faults) from None
 
 
 def _events(
@@ -86,7 +75,7 @@ def _header(name: str, run: "Session", replay: "Replay | None", ticks: int) -> l
     level, rate = run.level, run.level.settings.tick_rate
     steps = level.settings.substeps
     lines = [
-        name,
+        shortened(name),
         f"level       {level.name}",
         f"solver      {level.settings.solver}, {rate} ticks a second, "
         + ('substeps "auto"' if steps == "auto" else f"{steps} substeps" if steps != 1 else "1 substep"),

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sandbox.cli.base.command import Subcommand, WindowOptions, flag, option, optional_argument
-from sandbox.cli.base.inputs import EXIT_OK, level_or_replay
+from sandbox.cli.base.inputs import EXIT_OK, is_scene, level_or_replay
 from sandbox.cli.base.running import run_with_bar
 from sandbox.terminal import seconds
 
@@ -21,7 +21,7 @@ HEADLESS_SECONDS = 10.0
 class PlayOptions(WindowOptions):
     """Options of `play`: the file to open, and the window's."""
 
-    level: str | None = optional_argument(str, "LEVEL", "a level file, a shipped level's name, or a replay file")
+    level: str | None = optional_argument(str, "LEVEL", "a level file, the name of a shipped one, a replay, or a scene")
     profile: bool = flag("print where a frame's time goes, at the end")
     seconds: float | None = option(seconds, help="close the app after this many seconds")
 
@@ -39,6 +39,8 @@ def play(options: PlayOptions) -> int:
     def find() -> StartRequest:
         if options.level is None:
             return StartRequest()
+        if is_scene(options.level):
+            return StartRequest(scene=Path(options.level))
         level, replay = level_or_replay(options.level)
         source = Path(options.level) if not replay and Path(options.level).is_file() else None
         return StartRequest(None if replay else level, replay, source)

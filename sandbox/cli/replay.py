@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
 from sandbox.cli.base.running import PAGE, write_report
-from sandbox.terminal import Progress, cores, count, processes, tell
+from sandbox.terminal import Progress, cores, count, processes, shortened, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
@@ -69,7 +69,7 @@ def verify_files(options: ReplayOptions) -> int:
                 if options.json:
                     print(json.dumps(found.report))
                 elif found.code != EXIT_REFUSED:
-                    print(f"{name}: {found.report['text']}")
+                    print(f"{shortened(name)}: {found.report['text']}")
                 sys.stdout.flush()
                 if not options.json:
                     tell(found.report.get("faults", ()))

@@ -73,9 +73,11 @@ def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], b
     if path is None:
         yield lambda: True
         return
+    from sandbox.level.format.writing import unfinished
+
     # An older file is replaced in the end only; a device is written to.
     target = Path(os.path.realpath(path))
-    fresh = target.with_name(f".{os.getpid()}-{path.name}") if target.is_file() else path
+    fresh = unfinished(target, "".join(path.suffixes[-2:])) if target.is_file() else path
     written: Path | None = None
     try:
         session.record_to(fresh)

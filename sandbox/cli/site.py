@@ -31,13 +31,14 @@ def site(options: SiteOptions) -> int:
     """Write the site, and tell how large it is. Raises Refused."""
     from sandbox.app.site.index_page import IndexPage, SiteLevel, is_address
     from sandbox.app.site.site import write_site
+    from sandbox.level.format.writing import alike
     from sandbox.level.reading.files import shipped_levels
 
     shipped = {path.stem: path for path in shipped_levels()}
     paths = [shipped.get(name, Path(name)) for name in options.levels or shipped]
+    for stem in alike([path.stem for path in paths]):
+        raise Refused(f"{stem}: two levels have files of this name, where capitals do not count; rename one")
     levels = {path.stem: SiteLevel(path.stem, path, level_of(str(path))) for path in paths}
-    if len(levels) < len(paths):
-        raise Refused("two levels have files of one name; their pages would have one address")
     if options.output.exists() and not options.output.is_dir():
         raise Refused(f"{options.output}: is no folder")
     if options.address is not None and not is_address(options.address):

@@ -2,7 +2,6 @@
 
 import functools
 import json
-import os
 import shlex
 import tempfile
 import warnings
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from sandbox.level.document.model import Level
+from sandbox.level.format.writing import unfinished
 from sandbox.level.reading.files import LevelError, file_of, read_level, shipped_levels
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
 from sandbox.session.replay.reader import read_replay
@@ -298,7 +298,7 @@ def _update(golden: _Golden) -> Update | None:
     moved = [*golden.move_lines(), *(golden.rename_lines() if golden.is_renamed else [])]
     if found is None and not moved:
         return None
-    fresh = path.with_name(f".{os.getpid()}-{path.name}")
+    fresh = unfinished(path, "".join(path.suffixes[-2:]))
     try:
         record_again(golden.replay, level or golden.replay.level, fresh)
         fresh.replace(path)

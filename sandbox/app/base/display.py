@@ -19,12 +19,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StartRequest:
-    """What the app is to show first: a level (source: its file), a replay, or a file to edit, "" = an empty sheet."""
+    """What the app is to show first: a level (source: its file), a replay, a scene, or a file to edit, "" = an empty
+    sheet.
+    """
 
     level: "Level | None" = None
     replay: "Replay | None" = None
     source: Path | None = None
     edit: str | None = None
+    scene: Path | None = None
 
 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")

@@ -17,6 +17,7 @@ from sandbox.app.base.recent_pictures import RecentPictures
 from sandbox.app.draw.colours import THEME_NAMES, ThemeName
 from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
 from sandbox.level.document.model import Level
+from sandbox.level.format.writing import unfinished
 from sandbox.level.reading.files import read_level, shipped_folder, shipped_levels
 
 # Every picture's size [pixels]: that of a card at scale 2, and twice that at scale 1.
@@ -92,14 +93,14 @@ def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> 
 def keep_picture(picture: pygame.Surface, path: Path) -> None:
     """Write a picture, whole or not at all. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_suffix(f".{os.getpid()}{SUFFIX}")
+    fresh = unfinished(path, SUFFIX)
     try:
-        pygame.image.save(picture, str(unfinished))
-        os.replace(unfinished, path)
+        pygame.image.save(picture, str(fresh))
+        os.replace(fresh, path)
     except pygame.error as error:
         raise OSError(0, str(error), str(path)) from None
     finally:
-        unfinished.unlink(missing_ok=True)
+        fresh.unlink(missing_ok=True)
     _held.forget(path)
 
 

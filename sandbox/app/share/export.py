@@ -21,7 +21,7 @@ from sandbox.app.sound.sound_events import SoundEvents
 from sandbox.app.sound.sounds import cue_of
 from sandbox.app.sound.voices import Mixdown, Voices
 from sandbox.app.sound.waves import RATE, Bank
-from sandbox.level.format.writing import write_file
+from sandbox.level.format.writing import unfinished, write_file
 from sandbox.session.commands import CommandError
 
 # The work, in slices: each gives the part of it that is done, 0..1, the last nothing.
@@ -60,21 +60,21 @@ class Export:
     def slices(self) -> Slices:
         """Do the work. Raises OSError where the file cannot be written, of the file's name."""
         # In the same folder, where it can be renamed; hidden, and of the same kind for programs that look.
-        unfinished = self.path.with_name(f".{self.path.stem[:80]}-{os.getpid()}.{self.excerpt.kind}")
+        fresh = unfinished(self.path, f".{self.excerpt.kind}")
         writers = {
             "gif": self._write_gif, "mp4": self._write_movie, "png": self._write_still, "html": self._write_page,
         }  # fmt: skip
         write = writers[self.excerpt.kind]
         try:
             # What the folder refuses is said before any work is done.
-            unfinished.touch()
-            yield from write(unfinished)
-            self._keep(unfinished, self.path)
+            fresh.touch()
+            yield from write(fresh)
+            self._keep(fresh, self.path)
         except OSError as error:
             raise OSError(error.errno or 0, error.strerror or str(error), str(self.path)) from None
         finally:
             with contextlib.suppress(OSError):
-                unfinished.unlink(missing_ok=True)
+                fresh.unlink(missing_ok=True)
 
     def _write_gif(self, path: Path) -> Slices:
         from sandbox.app.share.gif import GifWriter

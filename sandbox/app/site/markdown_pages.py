@@ -13,7 +13,7 @@ from markdown_it.token import Token
 
 from sandbox.app.site.index_page import OWN, STYLE, link_list
 from sandbox.export.policy import policy
-from sandbox.level.format.writing import write_file
+from sandbox.level.format.writing import alike, write_file
 from sandbox.page.page import filled
 
 MARKDOWN, PAGE = ".md", ".html"
@@ -21,7 +21,10 @@ MARKDOWN, PAGE = ".md", ".html"
 _NO_LETTER = re.compile(r"[^\w -]")
 # Where something comes from that is no file of a site.
 _SOURCE = re.compile(r"https?://[\w.-]+(:\d+)?(?=/|$)|data:")
-_PARSER = MarkdownIt("commonmark").enable("table")
+# HTML in a document is text: whoever wrote it has no say in what a page of the site does.
+_PARSER = MarkdownIt("commonmark", {"html": False}).enable("table")
+# Pages that a site has anyway.
+_TAKEN = ("index.html",)
 
 
 class DocumentError(Exception):
@@ -54,6 +57,9 @@ def documents_of(start: Path) -> dict[Path, list[Token]]:
                 faults.append(f"{path}: {token.attrs[name]} lies outside of the folder of {start}")
             elif linked.suffix == MARKDOWN:
                 waiting.append(linked)
+    pages = [_address(path, start.resolve().parent) for path in found]
+    for page in alike([*_TAKEN, *pages]):
+        faults.append(f"{start}: two pages of the site would be {page}, where capitals do not count")
     if faults:
         raise DocumentError(faults)
     return found

@@ -101,6 +101,8 @@ class App:
             self.documents.begin(request.edit)
         else:
             self.open_gallery()
+            if request.scene is not None:
+                self.files.open_scene(request.scene)
 
     @property
     def play(self) -> PlayScreen | None:

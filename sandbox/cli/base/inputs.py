@@ -26,7 +26,19 @@ def level_of(name: str) -> "Level":
     try:
         return load_level(name)
     except LevelError as error:
+        if is_scene(name):
+            raise Refused(f"{name}: is a scene, a run as it stood; sandbox play opens it in the window") from None
         raise Refused(*error.faults) from None
+
+
+def is_scene(name: str) -> bool:
+    """Whether a file's first bytes are a scene's."""
+    from sandbox.session.scene import begins_as_scene
+
+    try:
+        return begins_as_scene(name)
+    except (OSError, ValueError):
+        return False
 
 
 def recording_of(name: str, partial: bool = False, retold: bool = False) -> "Replay":

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.document.model import Level
-from sandbox.level.format.writing import write_file
+from sandbox.level.format.writing import unfinished, write_file
 from sandbox.level.reading.files import level_data
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
@@ -78,7 +78,7 @@ def record_best(level: Level, script: Sequence[ScriptLine], ticks: int, folder: 
     """
     path = _recording(level, folder)
     # Of several windows each writes its own.
-    partial = path.with_name(f"{path.name}.{os.getpid()}")
+    partial = unfinished(path, SUFFIX)
     session = Session(level, script=script)
     try:
         session.record_to(partial)

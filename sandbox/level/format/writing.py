@@ -8,9 +8,11 @@ import secrets
 import shutil
 import stat
 import time
+from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
-_TEMPORARY = ".spring-sandbox-{}.tmp"
+_TEMPORARY = ".spring-sandbox-{}{}"
 # Age [s] beyond which a temporary file belongs to no write that still runs; younger ones are left alone.
 _ABANDONED = 3_600.0
 # What a folder or file system answers that cannot replace a file in one step, though the file may still be writable.
@@ -42,9 +44,20 @@ def write_file(path: Path, data: bytes) -> None:
         raise
 
 
-def _write_whole(path: Path, data: bytes) -> None:
+def unfinished(path: Path, ending: str) -> Path:
+    """A free name beside a file for what is to take its place when it is whole; those of killed programs are swept."""
     _sweep(path.parent)
-    temporary = path.with_name(_TEMPORARY.format(secrets.token_hex(8)))
+    return path.with_name(_TEMPORARY.format(secrets.token_hex(8), ending))
+
+
+def alike(names: Iterable[str]) -> list[str]:
+    """Of names those that another one is like, where systems do not tell capitals apart; each once."""
+    counts = Counter(name.casefold() for name in names)
+    return [name for name, count in counts.items() if count > 1]
+
+
+def _write_whole(path: Path, data: bytes) -> None:
+    temporary = unfinished(path, ".tmp")
     try:
         with open(temporary, "xb") as file:
             file.write(data)
@@ -118,7 +131,7 @@ def _refuse_what_is_no_file(path: Path) -> None:
 def _sweep(folder: Path) -> None:
     """Remove the temporary files of programs that were killed while they wrote."""
     with contextlib.suppress(OSError):
-        for left in folder.glob(_TEMPORARY.format("*")):
+        for left in folder.glob(_TEMPORARY.format("*", "")):
             if time.time() - left.stat().st_mtime > _ABANDONED:
                 left.unlink()
 

@@ -174,7 +174,7 @@ class ActionDef(Description):
     @property
     def done(self) -> tuple[Does, ...]:
         """The fields of DOES that the action has: one, where it is sound."""
-        return tuple(name for name in DOES if getattr(self, name) not in (None, False))
+        return tuple(name for name in DOES if not (getattr(self, name) is None or getattr(self, name) is False))
 
 
 # The field that says what, for those that belong to one.

@@ -41,7 +41,7 @@ _DIGEST = 8
 # Whole numbers that a float is sure of are below this.
 _SAFE = 2**53
 
-_LINK = re.compile(rf"(?:^|#){MARK}(\S*)$")
+_LINK = re.compile(rf"(?:^|#){MARK}(.*)$", re.DOTALL)
 _NO_HASHES = TickHashes("", ("",) * len(BY_STORED))
 
 
@@ -135,6 +135,8 @@ def _unpacked(text: str) -> _LinkedRun:
         raise ReplayError(f"the link unpacks to more than {UNPACKED_LIMIT // 2**20} MiB")
     if not opener.eof:
         raise ReplayError("the link is cut off: copy it again, whole")
+    if opener.unused_data:
+        raise ReplayError("the link goes on after its end: copy it again, without what follows")
     if fault := scan(plain):
         raise ReplayError(f"the link is damaged: {fault[1]}")
     try:
