@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.bring.sketch import (
+    PLACE_LIMIT,
     FilledShape,
     LeftOut,
     OpenLine,
@@ -41,14 +42,16 @@ _LINK = "{http://www.w3.org/1999/xlink}href"
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?")
 # Where svgelements stumbles over what is no drawing.
 STUMBLES = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
-_RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
+_UP_TO_BRACE = re.compile(r"([^{}]*)([{}]|\Z)")
 _SIMPLE = re.compile(r"[.#]?[A-Za-z_][\w-]*")
-_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
 _PAINT_SERVER = re.compile(r"url\(\s*['\"]?#([^'\")]*)['\"]?\s*\)")
 READ = ("fill", "stroke", "stroke-width", "fill-rule", "display", "visibility", "fill-opacity", "opacity", "color")
 # What an element says that changes how it is seen, and is not followed.
 UNFOLLOWED = {"clip-path": "clip path", "mask": "mask", "filter": "filter"}
 RULE_LIMIT = 10_000
+# Characters of a rule of a style sheet, or of what an element says of its style.
+STYLE_LIMIT = 10_000
 Sheet = dict[str, dict[str, str]]
 # Points of a curve, and of a whole turn of an arc.
 CURVE_POINTS, TURN_POINTS = 14, 48
@@ -139,7 +142,7 @@ class _Reader:
                 self.drawing.left_out.add(NAMES.get(kind, f"{kind[:40]} element"))
 
     def _copy(self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str) -> None:
-        link = (element.get("href") or element.get(_LINK) or "").strip()
+        link = (element.get("href") or element.get(_LINK) or "")[:STYLE_LIMIT].strip()
         target = self._by_id.get(link[1:]) if link.startswith("#") and len(link) > 1 else None
         if target is None or target in self._copied:
             self.drawing.left_out.add("copy of what is not in the file" if target is None else "copy of itself")
@@ -180,6 +183,8 @@ class _Reader:
         tint = self._colour(style.stroke, style)
         found = _NUMBER.match(style.stroke_width)
         width = float(found[0]) * float(np.sqrt(abs(np.linalg.det(matrix[:2, :2])))) if found else 1.0
+        if not width <= PLACE_LIMIT:
+            raise Unreadable(f"has a stroke wider than {PLACE_LIMIT:,.0f}; draw it thinner")
         for points, closed in ways:
             if len(points) > 3 and not closed:
                 closed = bool(np.all(np.abs(points[0] - points[-1]) <= 1e-6 * (np.abs(points[0]) + 1.0)))
@@ -264,16 +269,29 @@ def _style_sheet(root: Element, left_out: LeftOut) -> Sheet:
     for element in root.iter():
         if local_name(element) != "style" or not element.text:
             continue
-        for count, rule in enumerate(_RULE.finditer(_COMMENT.sub("", element.text))):
+        for count, (selectors, declarations) in enumerate(_rules(_COMMENT.sub("", element.text))):
             if count > RULE_LIMIT:
                 left_out.add(f"style sheet too long (its first {RULE_LIMIT:,} rules came in)")
                 break
-            for selector in rule[1].split(","):
+            own = _declarations(declarations)
+            for selector in selectors.split(","):
                 if _SIMPLE.fullmatch(selector.strip()):
-                    found.setdefault(selector.strip(), {}).update(_declarations(rule[2]))
+                    found.setdefault(selector.strip(), {}).update(own)
                 elif not selector.strip().startswith("@"):
                     left_out.add("style rule")
     return found
+
+
+def _rules(text: str) -> Iterator[tuple[str, str]]:
+    """Selectors and declarations of the rules of a style sheet; of rules in others those without such. In one pass."""
+    selectors = None
+    for found in _UP_TO_BRACE.finditer(text):
+        before, brace = found.groups()
+        if brace == "}" and selectors:
+            if len(selectors) + len(before) > STYLE_LIMIT:
+                raise Unreadable(f"has a style rule of more than {STYLE_LIMIT:,} characters; simplify it")
+            yield selectors, before
+        selectors = before if brace == "{" else None
 
 
 def _declarations(text: str) -> dict[str, str]:
@@ -283,7 +301,12 @@ def _declarations(text: str) -> dict[str, str]:
 
 
 def _own_properties(element: Element, sheet: Sheet) -> dict[str, str]:
-    """The properties of an element itself; its style attribute counts most, then its id, its classes and its name."""
+    """The properties of an element itself; its style attribute counts most, then its id, its classes and its name.
+
+    Raises Unreadable.
+    """
+    if max(len(element.get(key, "")) for key in ("class", "style", *READ, *UNFOLLOWED)) > STYLE_LIMIT:
+        raise Unreadable(f"has an element whose style is more than {STYLE_LIMIT:,} characters; simplify it")
     found = {key: value.strip() for key, value in element.attrib.items() if key in READ or key in UNFOLLOWED}
     classes = element.get("class", "").split()[:20]
     for selector in (local_name(element), *(f".{name}" for name in classes), f"#{element.get('id', '')}"):
@@ -350,6 +373,8 @@ class Paths:
         width, height = self._page
         whole = (width, height, math.hypot(width, height) / math.sqrt(2.0))[axis]
         text = element.get(key) or default
+        if len(text) > STYLE_LIMIT:
+            raise ValueError("too long")
         return float(Length("0" if text == "auto" else text).value(ppi=96.0, relative_length=whole, font_size=16.0))
 
     def _path(self, element: Element, kind: str) -> object:

@@ -108,7 +108,7 @@ class _Map:
     def __init__(self, drawing: Sketch, tile: tuple[float, float], tiles: _Tiles, layers: list[Object]) -> None:
         self.drawing, self._tile, self._tiles = drawing, tile, tiles
         self._layers: list[tuple[str, bool, NDArray[np.int64], tuple[int, int], tuple[float, float]]] = []
-        self._points = 0
+        self._points = self._cells = 0
         self._says_solid = _says_solid(layers, 0)
 
     def read(self, layers: list[Object], offset: tuple[float, float], depth: int) -> None:
@@ -134,7 +134,8 @@ class _Map:
                     else:
                         self.drawing.left_out.add("object of the game")
             elif kind == "tilelayer":
-                for cells, corner in _layer_cells(layer, self.drawing.left_out):
+                for cells, corner in _layer_cells(layer, self.drawing.left_out, CELL_LIMIT - self._cells):
+                    self._cells += cells.size
                     self._layers.append((text(layer, "name"), _is_marked(layer), cells, corner, place))
             else:
                 self.drawing.left_out.add("image layer" if kind == "imagelayer" else "layer of another kind")
@@ -270,7 +271,11 @@ def _form(each: Object) -> tuple[NDArray[np.float64], bool] | None:
     """Points of a shape about its place, y downward, and whether it is closed."""
     for key in ("polygon", "polyline"):
         if key in each:
-            places = [(number(place, "x"), number(place, "y")) for place in objects(each, key)]
+            places = (
+                _pairs(each[key])
+                if isinstance(each[key], str)
+                else [(number(place, "x"), number(place, "y")) for place in objects(each, key)]
+            )
             return np.array(places, dtype=np.float64).reshape(-1, 2), key == "polygon"
     width, height = number(each, "width"), number(each, "height")
     if each.get("ellipse"):
@@ -308,8 +313,8 @@ def _blocks(solid: NDArray[np.bool_]) -> Iterator[tuple[int, int, int, int]]:
             running.setdefault(run, row)
 
 
-def _layer_cells(layer: Object, left_out: LeftOut) -> Iterator[tuple[Cells, tuple[int, int]]]:
-    """Numbers of tiles (rows, columns), and the column and row of the first, of each part of a layer.
+def _layer_cells(layer: Object, left_out: LeftOut, most: int) -> Iterator[tuple[Cells, tuple[int, int]]]:
+    """Numbers of tiles (rows, columns), and the column and row of the first, of each part of a layer of so many.
 
     Raises Unreadable for what is damaged.
     """
@@ -322,8 +327,8 @@ def _layer_cells(layer: Object, left_out: LeftOut) -> Iterator[tuple[Cells, tupl
     for part in parts:
         width, height = whole(part, "width"), whole(part, "height")
         total += max(0, width) * max(0, height)
-        if width < 0 or height < 0 or total > CELL_LIMIT:
-            raise Unreadable(f"has a layer of tiles of no size, or of more than {CELL_LIMIT:,}")
+        if width < 0 or height < 0 or total > most:
+            raise Unreadable(f"has a layer of tiles of no size, or more than {CELL_LIMIT:,} tiles in all")
         cells = _cells(part.get("data"), width * height, packing)
         yield cells.reshape(height, width), (whole(part, "x"), whole(part, "y"))
 
@@ -425,15 +430,22 @@ def _object(element: Element) -> dict[str, Any]:
         if kind in _FORMS:
             data[kind] = True
         elif kind in ("polygon", "polyline"):
-            data[kind] = [_place(pair) for pair in (child.get("points") or "").split()]
+            # Kept as it is written, which takes least memory, until it is drawn.
+            data[kind] = child.get("points") or ""
     return data
 
 
-def _place(pair: str) -> dict[str, float]:
-    x, comma, y = pair.partition(",")
-    if not comma:
-        raise Unreadable(f"points: {pair[:40]} is no pair of numbers")
-    return {"x": _number(x, "points"), "y": _number(y, "points")}
+def _pairs(text: str) -> list[tuple[float, float]]:
+    """The places of "1,2 3,4". Raises Unreadable."""
+    if text.count(",") > POINT_LIMIT:
+        raise Unreadable(f"has a shape of more than {POINT_LIMIT:,} points; make it smaller")
+    places = []
+    for pair in text.split():
+        x, comma, y = pair.partition(",")
+        if not comma:
+            raise Unreadable(f"points: {pair[:40]} is no pair of numbers")
+        places.append((_number(x, "points"), _number(y, "points")))
+    return places
 
 
 def _attributes(element: Element) -> dict[str, Any]:

@@ -1,27 +1,32 @@
 """Worker pool: processes that do work for this one, and end with it."""
 
 import multiprocessing
+import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing import connection
 
 
 @contextmanager
 def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that what is submitted `interrupts_ignored` runs in; left by an exception, they are ended at once.
 
-    Raises OSError where a process cannot be started, or is gone before it has answered.
+    They end with this process too, whatever ends it. Raises OSError where a process cannot be started, or is gone
+    before it has answered.
     """
     # A new interpreter each: one that is copied would have threads that are not running any more.
     spawn = multiprocessing.get_context("spawn")
     others = set(multiprocessing.active_children())
-    workers = ProcessPoolExecutor(processes, spawn, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
+    workers = ProcessPoolExecutor(processes, spawn, initializer=_begin)
     try:
-        yield workers
-        workers.shutdown()
+        with _termination_raised():
+            yield workers
+            workers.shutdown()
     except BaseException as error:
         workers.shutdown(wait=False, cancel_futures=True)
         for child in set(multiprocessing.active_children()) - others:
@@ -31,6 +36,33 @@ def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
         if isinstance(error, BrokenProcessPool):
             raise OSError(0, "a process has ended before it has answered; is there memory for all?") from None
         raise
+
+
+@contextmanager
+def _termination_raised() -> Iterator[None]:
+    """Being asked to terminate leaves this as an exception, so that everything is put away; others keep their way."""
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) != signal.SIG_DFL:
+        yield
+        return
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def _begin() -> None:
+    """Begin as a worker: interrupts are for its parent, and it ends when that has."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        # The system closes the other end of what this waits for, however the parent ends. A worker has nothing to save.
+        connection.wait([parent.sentinel])
+        os._exit(1)
 
 
 @contextmanager
