@@ -13,8 +13,8 @@ from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.records import ScriptLine, to_record
 from sandbox.session.log import EventsByTick, LogEntry, until
+from sandbox.session.replay.format import STATE_LIMIT, encode_state, header, seal, unseal
 from sandbox.session.replay.format import VERSION as CHAINED
-from sandbox.session.replay.format import encode_state, header, seal, unseal
 from sandbox.session.replay.reader import (
     EndLine,
     FirstLine,
@@ -40,6 +40,8 @@ VERSION = 1
 SUFFIX = ".scene.jsonl"
 # States that a scene may hold.
 STANDING_LIMIT = 16
+# What these may hold together [bytes]: of the largest world as many as are kept.
+STANDING_BYTES = 240 * 2**20
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,6 +243,7 @@ class _SceneReading(RunReading):
     level: Level
     standings: list[Standing] = field(default_factory=list)
     _tick: int = 0
+    _room: int = STANDING_BYTES
 
     def add(self, line: SealedLine, number: int, where: str) -> None:
         """Read one line. Raises ReplayError where it does not fit there."""
@@ -254,9 +257,10 @@ class _SceneReading(RunReading):
             if len(self.standings) == STANDING_LIMIT:
                 raise ReplayError(f"{where}: a scene has at most {STANDING_LIMIT} states")
             try:
-                state = self.stored(line, number).of(self.level, line.tick)
+                state = self.stored(line, number).of(self.level, line.tick, min(STATE_LIMIT, self._room))
             except ValueError as error:
                 raise ReplayError(f"{where}: {error}") from None
+            self._room -= sum(array.nbytes for array in state.arrays.values())
             self.standings.append(Standing(len(self.script), state))
         elif isinstance(line, EndLine):
             if not self.standings or self.standings[-1].commands < len(self.script):

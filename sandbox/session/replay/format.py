@@ -56,6 +56,8 @@ TICK_DIGITS = 16
 ARRAY_DIGITS = 6
 # Ticks between two stored states, unless a writer is told otherwise.
 STATE_TICKS = 600
+# What the arrays of a state may hold together [bytes]: the largest world has 77 MB.
+STATE_LIMIT = 128 * 2**20
 # The most rows that arrays of a state can have: a world holds no more.
 MOST_ROWS = {
     Family.PARTICLE: PARTICLE_LIMIT + GRAB_COUNT,
@@ -147,8 +149,9 @@ def _equipment(
 
 
 def decode_state(
-    level: Level, tick: int, state: dict[str, str], settings: WorldSettings, joined: Sequence[Mapping[str, Any]]
-) -> Snapshot:
+    level: Level, tick: int, state: dict[str, str], settings: WorldSettings, joined: Sequence[Mapping[str, Any]],
+    most: int = STATE_LIMIT,
+) -> Snapshot:  # fmt: skip
     """The snapshot of a state line of a level's run; joined: what joined it until then. Raises ValueError, one line."""
     if not ALWAYS_STORED <= set(state) <= set(BY_STORED):
         raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
@@ -161,6 +164,9 @@ def decode_state(
         for column in columns:
             if column.stored in state:
                 arrays[column.stored] = decode_array(column, state[column.stored])
+                most -= arrays[column.stored].nbytes
+                if most < 0:
+                    raise ValueError("state: holds more than there is memory for")
                 counts.add(len(arrays[column.stored]))
             if len(counts) > 1:
                 raise ValueError(f"state: {', '.join(names)} are not equally long")

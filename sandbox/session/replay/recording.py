@@ -25,6 +25,7 @@ from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import (
     ARRAY_DIGITS,
+    STATE_LIMIT,
     STATE_TICKS,
     TICK_DIGITS,
     decode_state,
@@ -89,9 +90,9 @@ class StoredState:
     joined: tuple[dict[str, Any], ...]
     line: int
 
-    def of(self, level: Level, tick: int) -> Snapshot:
-        """The state at that tick of a run of the level. Raises ValueError, one line."""
-        return decode_state(level, tick, self.arrays, self.settings, self.joined)
+    def of(self, level: Level, tick: int, most: int = STATE_LIMIT) -> Snapshot:
+        """The state at that tick of a run of the level, of so many bytes at most. Raises ValueError, one line."""
+        return decode_state(level, tick, self.arrays, self.settings, self.joined, most)
 
 
 @dataclass(frozen=True)
