@@ -12,6 +12,9 @@ import pytest
 
 from sandbox.cli import COMMANDS, main, play
 from sandbox.cli.base.command import Subcommand, argument, declare, flag, option, option_or, read
+from sandbox.level.reading.files import load_level
+from sandbox.session.scene import SceneTaker, scene_lines
+from sandbox.session.session import Session
 from sandbox.terminal import seconds
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -102,3 +105,20 @@ def test_the_type_checker_finds_an_option_that_is_not_declared_or_has_another_ty
     found = {int(place.split(":")[1]): text for place, text in lines if place.startswith("wrong.py")}
     assert set(found) == {10, 13, 16, 18}, run.stdout + run.stderr
     assert '"PlayOptions" has no attribute "state"' in found[13]
+
+
+def test_a_value_below_zero_is_no_option(tmp_path, capsys):
+    assert main(["run", "rope_bridge_jelly", "--ticks", "20", "--record", str(tmp_path / "a.replay.gz")]) == 0
+    capsys.readouterr()
+    for said in (["--leaves", "-1e6,-1e6,1e6,1e6"], ["--leaves=-1e6,-1e6,1e6,1e6"]):
+        assert main(["shrink", str(tmp_path / "a.replay.gz"), *said, "-o", str(tmp_path / "b.replay.gz")]) == 2
+        assert "expected one argument" not in (told := capsys.readouterr().err) and "a.replay.gz" in told
+
+
+def test_a_scene_is_told_from_a_level(tmp_path, capsys):
+    path = tmp_path / "kept.scene.jsonl"
+    path.write_bytes(b"".join(scene_lines(SceneTaker(Session(load_level("rope_bridge_jelly"))).take(), None)))
+    for command in ("info", "check", "run"):
+        assert main([command, str(path)]) == 2
+        told = f"{path}: is a scene, a run as it stood, not a Spring Sandbox level; `sandbox play` opens it\n"
+        assert capsys.readouterr().err == told

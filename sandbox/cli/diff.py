@@ -59,7 +59,7 @@ def diff(options: DiffOptions) -> int:
     if options.json:
         print(json.dumps(_json(options, found)))
     else:
-        print(f"A  {options.first}\nB  {options.second}")
+        print(f"A  {first.name}\nB  {second.name}")
         print("\n".join(found.lines()))
     if options.output:
         _draw_difference((first, second), found, options.output)

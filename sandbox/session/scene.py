@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sandbox.level.document.model import Level
+from sandbox.level.format.foreign import SCENE_FORMAT as FORMAT
 from sandbox.level.format.level_error import one_line
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.state import BY_STORED
@@ -35,7 +36,6 @@ from sandbox.session.session import Session
 # the file.
 STATES_BEFORE = 2
 _ADDED, _CUT = ("add_body", "add_particle", "add_spring"), "cut_springs"
-FORMAT = "spring-sandbox/scene"
 VERSION = 1
 SUFFIX = ".scene.jsonl"
 # States that a scene may hold.

@@ -11,7 +11,9 @@ from sandbox.editor.storage.preferences import remember
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
+from sandbox.session.scene import SceneTaker, scene_lines
 from tests.app.conftest import Driver, small_level
+from tests.support.hostile_scenes import bodies_far_out, resealed
 
 
 def test_every_shipped_level_has_a_card_with_a_picture(open_app):
@@ -199,3 +201,15 @@ def test_enter_opens_the_first_hit_which_is_then_played_lately(open_app):
     lately = next(group for group in driver.app.gallery.groups if group.title == "Recently played")
     assert [card.name for card in lately.cards] == ["Girder"] and lately.is_shortcut
     assert not any(card.badge for card in driver.app.gallery.cards)
+
+
+def test_the_card_of_a_scene_that_asks_for_all_memory_says_that_it_is_damaged(driver: Driver, documents):
+    path = documents / "hostile.scene.jsonl"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"".join(scene_lines(SceneTaker(driver.playback.session).take(), None)))
+    resealed(path, bodies_far_out)
+    driver.app.open_gallery("mine")
+    card = next(card for card in driver.app.gallery.cards if card.name == "hostile")
+    while not (card.broken or card.picture):
+        driver.frames()
+    assert card.broken and "beyond the arrays" in card.text

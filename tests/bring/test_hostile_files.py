@@ -43,6 +43,7 @@ def crossing(count):
 ENTITIES = "".join(f'<!ENTITY a{k} "&a{k - 1};&a{k - 1};">' for k in range(1, 30))
 COPIES = "".join(f'<g id="u{k}">' + f'<use href="#u{k - 1}"/>' * 10 + "</g>" for k in range(1, 12))
 ZEROS = base64.b64encode(zlib.compress(bytes(50_000_000))).decode()
+MILLION = base64.b64encode(zlib.compress(b"\1\0\0\0" * 1_000_000)).decode()
 HOSTILE = {
     "entities.svg": (f'<!DOCTYPE l [<!ENTITY a0 "ha">{ENTITIES}]>{HEAD}<text>&a29;</text></svg>', "declares entities"),
     "outside.svg": (f'<!DOCTYPE s [<!ENTITY x SYSTEM "file:///x">]>{HEAD}<text>&x;</text></svg>', "declares entities"),
@@ -52,10 +53,22 @@ HOSTILE = {
     "path.svg": (f'{HEAD}<path d="M0 0 {"L1 1 2 0 " * 120_000}"/></svg>', "characters of paths"),
     "points.svg": (f'{HEAD}<polygon points="{"1 1 2 0 " * 11_000}"/></svg>', "more than 20,000 points"),
     "crossing.svg": (f'{HEAD}<polygon points="{crossing(3_000)}"/></svg>', "too many sides that cross"),
+    "style.svg": (f"{HEAD}<style>{'a' * 8_000_000}</style></svg>", "no outline"),
+    "comments.svg": (f"{HEAD}<style>{'/*' * 4_000_000}</style></svg>", "no outline"),
+    "commas.svg": (f"{HEAD}<style>{'a,' * 4_000_000}b{{}}</style></svg>", "a style rule of more than 10,000"),
+    "paint.svg": (f'{HEAD}<g fill="{"url(#" * 9_000}">{"<rect/>" * 15_000}</g></svg>', "style is more than 10,000"),
+    "stroke.svg": (f'{HEAD}<path d="M0 0L9 9" fill="none" stroke="red" stroke-width="9e999"/></svg>', "a stroke wider"),
     "pixels.png": (picture(60_000, 60_000, zlib.compress(bytes(1_000))), "PNG"),
     "data.png": (picture(4, 4, zlib.compress(bytes(50_000_000))), "transparent all over"),
     "text.png": (picture(4, 4, b"", _chunk(b"zTXt", b"a\0\0" + zlib.compress(bytes(50_000_000)))), "damaged PNG"),
     "cells.tmj": (tiled(layers=[layer(100_000, "AAAA")]), "more than 1,000,000"),
+    "layers.tmj": (tiled(layers=[layer(1_000, MILLION)] * 50), "more than 1,000,000 tiles in all"),
+    "empty.tmj": (tiled(layers=[{**layer(1_000, None), "data": None}] * 3_000), "more than 1,000,000 tiles in all"),
+    "points.tmx": (
+        '<map orientation="orthogonal" tilewidth="16" tileheight="16"><objectgroup name="solid"><object>'
+        f'<polygon points="{"1,2 " * 1_000_000}"/></object></objectgroup></map>',
+        "a shape of more than 40,000 points",
+    ),
     "zeros.tmj": (tiled(layers=[layer(10, ZEROS)]), "not as long as its size"),
     "deep.tmj": ('{"type": "map", "layers": ' + "[" * 100_000 + "]" * 100_000 + "}", "32 deep"),
     "nothing.tmj": (tiled(layers=[]), "has no outline to bring in"),

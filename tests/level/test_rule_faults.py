@@ -103,3 +103,12 @@ def test_ids_of_counters_and_rules_are_their_own():
         'counters.1.id: "a" is taken; every counter needs an id of its own',
         'rules.1.id: "r" is taken; every rule needs an id of its own',
     ]
+
+
+@pytest.mark.parametrize("sag", [0, 0.0, 0.4])
+def test_a_body_may_become_as_stiff_as_can_be(sag):
+    body = {"type": "jelly", "id": "j", "shape": {"box": [0.8, 0.8]}, "spacing": 0.2, "position": [0, 30],
+            "firmness": {"sag": 0.1}}  # fmt: skip
+    rule = {"id": "a", "when": {"time": 0.1}, "then": [{"sag": sag, "body": "j"}]}
+    level = parse_level(json.dumps(LEVEL | {"bodies": [body], "rules": [rule]}).encode(), "rigid")
+    assert level.rules[0].then[0].done == ("sag",)

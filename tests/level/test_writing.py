@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.level.format import writing
-from sandbox.level.format.writing import write_file, write_over
+from sandbox.level.format.writing import unfinished, write_file, write_over
 
 OLD, NEW = b'{"old": 1}', b'{"new": 2}' * 100
 
@@ -206,10 +206,12 @@ def test_a_file_system_without_flushing_is_written_to_all_the_same(path, monkeyp
 
 
 def test_what_killed_programs_left_is_swept_and_what_others_write_now_is_not(path):
+    recording = unfinished(path.with_name("played.replay.gz"), ".replay.gz")
     old, young = (path.with_name(f".spring-sandbox-{name}.tmp") for name in ("old", "young"))
-    for left in (old, young):
+    for left in (old, young, recording):
         left.write_bytes(b"half")
     day_ago = time.time() - 86_400
-    os.utime(old, (day_ago, day_ago))
+    for left in (old, recording):
+        os.utime(left, (day_ago, day_ago))
     write_file(path, NEW)
     assert sorted(os.listdir(path.parent)) == [young.name, "x.json"]

@@ -189,3 +189,24 @@ def test_the_shell_makes_a_link_and_takes_it_where_it_takes_a_recording(tmp_path
     assert capsys.readouterr().out.endswith(": equal at its end, 40 ticks\n")
     assert main(["replay", link[:-40]]) == 2
     assert capsys.readouterr().err.strip() == "the link is cut off: copy it again, whole"
+
+
+def test_letters_behind_the_end_of_a_run_are_refused(fragment):
+    for more in ("AAAA", " and more", "\n"):
+        text = fragment + more
+        if more.strip():
+            with pytest.raises(ReplayError, match="copy it again"):
+                replay_of(text)
+        else:
+            assert replay_of(text).ticks == replay_of(fragment).ticks
+
+
+@pytest.mark.parametrize("command", ["info", "replay", "show", "diff"])
+def test_a_link_is_told_by_its_beginning_alone(command, tmp_path, capsys):
+    from sandbox.cli import main
+
+    link = SITE + fragment_of(recording(4, 40, tmp_path))
+    for said, expected in ((link, 0), (link + "A" * 300, 2), (link.replace(MARK, f"{MARK}% "), 2)):
+        assert main([command, said, *[said] * (command == "diff")]) == expected
+        told = "".join(capsys.readouterr())
+        assert told.strip() and link[-40:] not in told and "Traceback" not in told

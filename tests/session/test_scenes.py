@@ -1,10 +1,16 @@
 """A scene, from its file, stands as the run stood that it was taken of, and goes on to the very bits; undo as well."""
 
+import base64
+import subprocess
+import sys
+import zlib
+
 import numpy as np
 import pytest
 
 from sandbox.level.reading.files import load_level
 from sandbox.physics.snapshot import state_hash
+from sandbox.physics.state import BY_STORED, Family
 from sandbox.session.commands import (
     AddBody,
     AddParticle,
@@ -21,6 +27,7 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.scene import SceneTaker, read_about, read_scene, scene_lines
 from sandbox.session.session import Session
+from tests.support.hostile_scenes import bodies_far_out, resealed
 
 JELLY = {
     "type": "jelly", "position": [0.0, 5.0], "shape": {"box": [0.6, 0.6]}, "spacing": 0.2, "particle_radius": 0.03,
@@ -172,3 +179,63 @@ def test_a_scene_that_is_cut_off_is_refused_in_one_line(kept, tmp_path):
     with pytest.raises(ReplayError) as error:
         read_scene(path)
     assert len(error.value.faults) == 1
+
+
+def _zeros(name, count):
+    rows = BY_STORED[name].usual_rows(count)
+    return base64.b64encode(zlib.compress(rows.tobytes(), 9)).decode()
+
+
+def _endless_rows(values):
+    if "state" in values:
+        values["state"]["mass"] = _zeros("mass", 10_000_000)
+    yield values
+
+
+def _many_rows(values):
+    columns = [column for column in BY_STORED.values() if column.family is Family.CONTACT]
+    if "state" in values:
+        values["state"] |= {column.stored: _zeros(column.stored, 1_000_000) for column in columns}
+    yield values
+    if "state" in values:
+        yield from [values | {"state": {}}] * 12
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (bodies_far_out, "joined: bodies lie over each other, or beyond the arrays"),
+        (_endless_rows, "state.mass: cut off, or of more than 100,010 rows"),
+        (_many_rows, "state: holds more than there is memory for"),
+    ],
+)
+def test_a_small_file_that_asks_for_all_memory_is_refused_before_it_has_it(change, said, tmp_path):
+    path = tmp_path / "hostile.scene.jsonl"
+    through_file(played("rope_bridge_jelly"), path)
+    resealed(path, change)
+    # In a process of its own, whose memory is limited by the system.
+    program = (
+        "import resource, sys, pathlib; from sandbox.session.scene import read_scene; "
+        "resource.setrlimit(resource.RLIMIT_AS, (2**31, 2**31)); "
+        "read_scene(pathlib.Path(sys.argv[1]))"
+    )
+    ended = subprocess.run([sys.executable, "-c", program, path], capture_output=True, text=True, check=False)
+    assert ended.returncode == 1 and said in ended.stderr.splitlines()[-1], ended.stderr[-500:]
+
+
+@pytest.mark.parametrize("name", ["particle_a", "corner_particle", "material", "law", "edge", "element_kind"])
+def test_a_state_whose_slots_are_not_there_is_refused_by_the_name_of_the_array(name, tmp_path):
+    path = tmp_path / "hostile.scene.jsonl"
+    through_file(played("jelly_cube"), path)
+
+    def change(values):
+        if name in values.get("state", {}):
+            kind = BY_STORED[name].dtype
+            rows = np.frombuffer(zlib.decompress(base64.b64decode(values["state"][name])), kind).copy()
+            rows[0] = min(10**6, np.iinfo(kind).max)
+            values["state"][name] = base64.b64encode(zlib.compress(rows.tobytes())).decode()
+        yield values
+
+    resealed(path, change)
+    with pytest.raises(ReplayError, match=rf"state\.{name}[ :]"):
+        read_scene(path)

@@ -26,8 +26,6 @@ def level_of(name: str) -> "Level":
     try:
         return load_level(name)
     except LevelError as error:
-        if is_scene(name):
-            raise Refused(f"{name}: is a scene, a run as it stood; sandbox play opens it in the window") from None
         raise Refused(*error.faults) from None
 
 

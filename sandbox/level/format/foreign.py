@@ -10,6 +10,9 @@ from sandbox.level.format.limits import CONTAINER_LIMIT, DEPTH_LIMIT
 
 # What Git LFS leaves in place of a file that was not fetched.
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+# What the first line of a scene calls itself.
+SCENE_FORMAT = "spring-sandbox/scene"
+SCENE = "a scene, a run as it stood"
 SVG, PNG, RUBE = "an SVG drawing", "a PNG picture", "an R.U.B.E. scene (JSON)"
 TILED, TILED_XML = "a Tiled map (JSON)", "a Tiled map (XML)"
 # What `sandbox bring` makes levels of.
@@ -32,6 +35,8 @@ _HEAD = 4096  # [bytes]
 def foreign_fault(kind: str) -> str:
     """The message about a file of another program in place of a level, and what can be done."""
     remedy = "; `sandbox bring` makes a level of it, and so does dropping it on the window" if kind in BROUGHT else ""
+    if kind == SCENE:
+        remedy = "; `sandbox play` opens it"
     return f"is {kind}, not a Spring Sandbox level{remedy}"
 
 
@@ -44,6 +49,8 @@ def foreign_bytes(data: bytes) -> str | None:
         is_scene = b".phn" in data[:_HEAD]
         return "an Algodoo scene (.phz)" if is_scene else "a zip archive, as Algodoo's .phz is"
     head = data[:_HEAD].lstrip()
+    if SCENE_FORMAT.encode() in head[:64]:
+        return SCENE
     if _MAYBE_XML.match(head):
         root = _ROOT.search(re.sub(rb"<!--.*?-->", b"", head, flags=re.DOTALL))
         return _ROOTS.get(root[1].decode(), "an XML file") if root else "an XML file"
