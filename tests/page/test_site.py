@@ -148,9 +148,14 @@ def test_what_cannot_be_a_site_is_one_line(tmp_path: Path, capsys: pytest.Captur
     own, document, outside = (tmp_path / name for name in ("rope.json", "broken.md", "in/outside.md"))
     own.write_bytes((ROOT / "levels" / "rope.json").read_bytes())
     outside.parent.mkdir()
+    loud, index = tmp_path / "in" / "ROPE.json", tmp_path / "in" / "Index.md"
+    loud.write_bytes(own.read_bytes())
+    index.write_text("# Index\n", encoding="utf-8")
     outside.write_text("No heading, and [a level](../rope.json)\n", encoding="utf-8")
     refused = (
-        (["rope", str(own)], "two levels have files of one name"),
+        (["rope", str(own)], "rope: two levels have files of this name"),
+        (["rope", str(loud)], "rope: two levels have files of this name, where capitals do not count"),
+        (["rope", "--document", str(index)], "two pages of the site would be index.html"),
         (["rope", "--document", str(document)], "there is no gone.md"),
         (["rope", "--document", str(outside)], "../rope.json lies outside of the folder"),
         (["nothing_like_it"], "there is no such file"),
@@ -162,3 +167,11 @@ def test_what_cannot_be_a_site_is_one_line(tmp_path: Path, capsys: pytest.Captur
         told = capsys.readouterr().err
         assert said in told and len(told.strip().splitlines()) == 1
     assert not (tmp_path / "site" / "index.html").exists()
+
+
+def test_html_of_a_document_is_text_on_its_page(tmp_path: Path) -> None:
+    document = tmp_path / "notes.md"
+    document.write_text("# Notes\n\n<form action=x><img src=y></form>\n\nA <b>word</b>.\n", encoding="utf-8")
+    assert main(["site", "rope", "--document", str(document), "-o", str(tmp_path / "site")]) == 0
+    text = (tmp_path / "site" / "notes.html").read_text(encoding="utf-8")
+    assert "<form" not in text and "<b>" not in text and "&lt;form action=x&gt;" in text and "&lt;b&gt;word" in text

@@ -63,8 +63,8 @@ def _tried(world, argument, value, act, fresh):
     try:
         act(world)
     except RAISED as error:
-        # A right value can be refused for how things are.
-        assert isinstance(error, RefusedCommand) or argument in str(error), (
+        # A right value can be refused for how things are, and a name for which there is none is said alone.
+        assert isinstance(error, RefusedCommand | KeyError) or argument in str(error), (
             f"{argument} = {value!r:.60}: {type(error).__name__}: {error}"
         )
         assert memory_of(world) == before and state_hash(world) == hashed, f"{argument} = {value!r:.60}: {error}"

@@ -155,8 +155,8 @@ class Names:
 
     def slot(self, name: str) -> int:
         """The slot of that name. Raises KeyError."""
-        if not isinstance(name, str) or name not in self._slots:
-            raise KeyError(f"name {name!r:.60}: there is none")
+        if not isinstance(name, str):
+            raise KeyError(f"name {name!r:.60}: a text is needed")
         return self._slots[name]
 
     def unused(self, prefix: str, count: int) -> list[str]:
