@@ -161,6 +161,7 @@ class StateArrays:
     slow_change = _array("slow_change", P, F64, "m/s", "the slow component of the change of slow_velocity in a step, for the direct solver", width=2, sparse=True)
     unmoved = _array("unmoved", P, BOOL, "", "whether it has not taken a step yet: its velocity is that of the tick, not of half a step before", sparse=True)
     untouchable = _array("untouchable", P, BOOL, "", "whether the level lets no hand touch it", sparse=True)
+    unreturnable = _array("unreturnable", P, F64, "J", "energy that springs of its body count and cannot give back, at its free particle of lowest slot", sparse=True)
 
     particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True, of=P)
     particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True, of=P)

@@ -15,7 +15,7 @@ from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.world import World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
-PHYSICS_VERSION = 10
+PHYSICS_VERSION = 11
 
 
 def precompute(world: World) -> None:

@@ -150,7 +150,8 @@ def energies(graphs: Graphs, count: int, constant: Floats) -> Floats:
             *tick_constraint_coefficients(world), effective, 1.0 / world.settings.tick_rate
         )
         doubled = doubled + np.bincount(graphs.of_element, of_constraints * value**2, count)
-    return 0.5 * doubled
+    # What springs count and cannot give back: see the bound in docs/physics.md.
+    return 0.5 * doubled - np.bincount(graphs.of_particle, world.unreturnable, count)
 
 
 def highest_energies(graphs: Graphs, count: int, steps: int) -> Floats:

@@ -44,7 +44,8 @@ def test_a_rigid_body_turns_for_ever(form, settings):
         spin, energy = angular_momentum(session, body), kinetic(session)
         advance(session, 600)
         assert angular_momentum(session, body) == pytest.approx(spin, rel=1e-11), rate
-        assert kinetic(session) == pytest.approx(energy, rel=1e-6), rate
+        # At a radian a step what it stretches by holds a part of that.
+        assert kinetic(session) == pytest.approx(energy, rel=1e-6 if rate < 60.0 else 5e-3), rate
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

@@ -73,7 +73,7 @@ def sweep_masses(
         of_island, its_terms = _of_island(i, contacts, terms, order)
         propagate_impacts(of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
         solve_contacts(
-            of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, 0.0, 1.0, True
+            of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, 0.0, 1.0
         )  # fmt: skip
     add_change(state.velocity, delta_v, state.inverse_mass)
     store_spins(terms, state.spin, state.radius)
@@ -212,13 +212,13 @@ def _solve_pass(
 @inner_kernel
 def solve_contacts(
     contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
-    delassus: Delassus, sweeps: int, most: int, affordable: float, cost: float, accelerate: bool,
+    delassus: Delassus, sweeps: int, most: int, affordable: float, cost: float,
 ) -> int:  # fmt: skip
     """Sweep until nothing changes, at most so many times, or `most` where what is calm changes still; what it took, in
     sweeps.
 
-    affordable: what an exact solve may take, in sweeps of `cost` pushes; 0: there is none. accelerate: each sweep goes
-    on in the direction of those before it. Joints are swept before contacts.
+    affordable: what an exact solve may take, in sweeps of `cost` pushes; 0: there is none. Each sweep goes on in the
+    direction of those before it. Joints are swept before contacts.
     """
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
     start_sweeps(contacts, terms, delta_v, inverse_mass, delassus)
@@ -249,7 +249,7 @@ def solve_contacts(
                 return done + spent
             checked = calm
         squared = change_of_sweep(contacts, terms, delassus.joints)
-        ratio = squared / previous if accelerate and previous > 0.0 else 0.0
+        ratio = squared / previous if previous > 0.0 else 0.0
         go_on(contacts, terms, delta_v, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
         previous = squared
 

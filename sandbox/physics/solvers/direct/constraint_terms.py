@@ -22,7 +22,8 @@ from sandbox.physics.constraints import (
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
 from sandbox.physics.geometry.segment import polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.solvers.direct.system import Constraints, Span, System
+from sandbox.physics.solvers.direct.spring_terms import moved_mass, restoring_mass
+from sandbox.physics.solvers.direct.system import Constraints, Rows, Span, System
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
 
@@ -49,10 +50,7 @@ def load_constraints(
             constraints.rest[k, axis] = state.constraint_rest[s, axis]
         for c in range(constraints.first[k], constraints.first[k + 1]):
             constraints.weight[c] = state.corner_weight[constraints.corner[c]]
-        total = 0.0
-        for c in range(constraints.first[k], constraints.first[k + 1]):
-            total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
-        mass = 1.0 / total if total > 0.0 else 0.0  # (17)
+        mass = _effective_mass(k, rows, constraints)
         constraints.floor[k] = 0.0
         if system.shape_match_groups.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
             constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
@@ -243,6 +241,37 @@ def push_constraints(span: Span, system: System) -> None:
             if r < free_count:
                 rows.delta_v[r, 0] += constraints.impulse[k] * constraints.gradient[c, 0]
                 rows.delta_v[r, 1] += constraints.impulse[k] * constraints.gradient[c, 1]
+
+
+@inner_kernel
+def restore_constraints(span: Span, system: System, h: float) -> None:
+    """The impulses that bring a body's constraints to their rest, as `restore_springs` has of springs."""
+    rows, constraints = system.rows, system.constraints
+    for k in range(span.first_constraint, span.last_constraint):
+        _look(k, constraints, rows.position, rows.v, h)
+        constraints.predicted[k] = _error(k, constraints, constraints.spare)
+        mass = restoring_mass(constraints.K[k], constraints.k_h2[k], _effective_mass(k, rows, constraints))
+        constraints.impulse[k] = -mass * constraints.predicted[k] / h
+
+
+@inner_kernel
+def unrestored_constraint_energy(span: Span, system: System, h: float) -> float:
+    """What a body's constraints hold [J] then, as `unrestored_energy` has of springs."""
+    rows, constraints = system.rows, system.constraints
+    free_count = system.matrix.diagonal.shape[0]
+    total = 0.0
+    for k in range(span.first_constraint, span.last_constraint):
+        error = constraints.predicted[k] / h + gradient_dot(k, constraints, rows.delta_v, free_count)
+        total += 0.5 * moved_mass(constraints.k_h2[k], _effective_mass(k, rows, constraints)) * error * error
+    return total
+
+
+@inner_kernel
+def _effective_mass(k: int, rows: Rows, constraints: Constraints) -> float:
+    total = 0.0
+    for c in range(constraints.first[k], constraints.first[k + 1]):
+        total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
+    return 1.0 / total if total > 0.0 else 0.0  # (17)
 
 
 @inner_kernel

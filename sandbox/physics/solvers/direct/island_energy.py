@@ -13,10 +13,18 @@ nothing.
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.surfaces import SURFACE_WEIGHT
 from sandbox.physics.collision.tunnelling import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.geometry.rigid import (
+    RigidMotion,
+    WeightedSums,
+    centre_of,
+    velocity_at,
+    with_point,
+    with_turn,
+)
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.marks import BANK_UNOPENED, TERRAIN_GROUP
 from sandbox.physics.solvers.contact.gauss_seidel import (
@@ -28,17 +36,33 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
 from sandbox.physics.solvers.direct.energy_budget import (
     BUDGET_SHARE,
     ENERGY_ROUNDING,
+    FALLING,
     LAST_HALVINGS,
+    SETTLED,
+    SLOWING_ROUNDS,
     UNDERDAMPED_BUDGET_SHARE,
     body_energy,
     budget_limit,
+    first_ratio,
     is_deep,
+    keeps_lengths,
+    next_ratio,
     reserve,
+    unreturnable,
 )
-from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
+from sandbox.physics.solvers.direct.islands import (
+    ALLOWED,
+    BODIES,
+    EXCESS,
+    LENT,
+    MEMBERS,
+    TOTAL,
+    BodyIslands,
+    IslandWorkspace,
+)
 from sandbox.physics.solvers.direct.network import find_tension
 from sandbox.physics.solvers.direct.response import work_of_joints
-from sandbox.physics.solvers.direct.rigid_turn import damp_within
+from sandbox.physics.solvers.direct.rigid_turn import chord_at, slow_beside
 from sandbox.physics.solvers.direct.system import (
     END_INERTIA,
     END_INWARD,
@@ -54,16 +78,15 @@ from sandbox.physics.solvers.direct.system import (
     copy,
     hold_triangles,
     kinetic,
-    scale,
     span_of,
 )
 from sandbox.physics.state import State
 from sandbox.physics.untangling.depenetration import DEPENETRATION_SPEED
 
-# Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
-INNER_HALVINGS = 3
-# The same of a body that joints alone drive.
-DRIVEN_HALVINGS = 12
+# Normals of contacts are parallel where their cross product is at most this.
+PARALLEL = 1e-6
+# A joint whose gradient sums up to less than this share of its size acts within what it moves, as a motor does.
+WITHIN = 1e-9
 # What budgets save for pushing apart what penetrates lets a body have this speed [m/s] as a whole. More lets what a
 # crash has lost come back, less leaves what lies deep in terrain there for longer.
 PAID_PUSH = 0.4
@@ -149,13 +172,16 @@ def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace,
 
 @inner_kernel
 def weigh_body(k: int, span: Span, rows: Rows, islands: BodyIslands) -> None:
-    """Note what one body weighs, and what it would seem to gain if it were stopped."""
+    """Note what one body weighs, what it would seem to gain if it were stopped, and what it may owe."""
     islands.mass[k] = 0.0
     islands.rises[k] = 0.0
+    islands.debt[k] = 0.0
     for r in range(span.first_row, span.last_row):
         islands.mass[k] += rows.mass[r]
         along = rows.start[r, 0] * rows.v_star[r, 0] + rows.start[r, 1] * rows.v_star[r, 1]
         islands.rises[k] -= 0.5 * rows.mass[r] * along
+        x, y = rows.v_star[r, 0] - rows.start[r, 0], rows.v_star[r, 1] - rows.start[r, 1]
+        islands.debt[k] += 0.25 * rows.mass[r] * (x * x + y * y)
 
 
 @inner_kernel
@@ -168,6 +194,8 @@ def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
         islands.mass[k] = state.mass[p]
         ux, uy = islands.v0[p, 0], islands.v0[p, 1]
         islands.rises[k] = -0.5 * state.mass[p] * (start[p, 0] * ux + start[p, 1] * uy)
+        x, y = ux - start[p, 0], uy - start[p, 1]
+        islands.debt[k] = 0.25 * state.mass[p] * (x * x + y * y)
         surface = state.spin[p] * state.radius[p]
         islands.energy0[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
         islands.budget[k] = max(0.0, state.energy_bank[p])
@@ -240,27 +268,32 @@ def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: Sys
 
 
 @inner_kernel
-def any_fails(islands: BodyIslands) -> bool:
-    """Whether any island failed its last energy test."""
-    found = False
-    for island in range(islands.counts[ISLANDS]):
-        found = found or islands.fails[island]
-    return found
+def limit_pushes(contacts: Contacts, workspace: IslandWorkspace, h: float) -> None:
+    """Let what penetrates part no faster than budgets can pay for."""
+    # A push at speed u beyond that at which its last impulse J rests costs u^2 / (2 R) + J u.
+    islands, terms = workspace.islands, workspace.terms
+    saved = square = linear = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        saved += islands.budget[k]
+    for c in range(contacts.particle.shape[0]):
+        speed = _speed_beyond_rest(c, contacts, terms)
+        if speed > 0.0:
+            square += 0.5 * speed * speed / terms.normal[c]
+            linear += contacts.impulse[c, 0] * speed
+    if square + linear > saved:
+        # square r^2 + linear r = saved
+        ratio = 2.0 * saved / (linear + math.sqrt(linear * linear + 4.0 * square * saved)) if saved > 0.0 else 0.0
+        for c in range(contacts.particle.shape[0]):
+            speed = _speed_beyond_rest(c, contacts, terms)
+            if speed > 0.0:
+                terms.bias[c] += (1.0 - ratio) * speed
 
 
-@inner_kernel
-def note_way(way: int, islands: BodyIslands) -> None:
-    """Note that the islands which fail go on this way, see PASSED."""
-    for island in range(islands.counts[ISLANDS]):
-        if islands.fails[island]:
-            islands.way[island] = way
-
-
-@inner_kernel
-def count_ways(islands: BodyIslands, ways: Slots) -> None:
-    """Count the last way of each island; ways (WAYS,)."""
-    for island in range(islands.counts[ISLANDS]):
-        ways[islands.way[island]] += 1
+@inlined_kernel
+def _speed_beyond_rest(c: int, contacts: Contacts, terms: ContactConstraints) -> float:
+    if not (contacts.gap[c] < 0.0 and contacts.bounce[c] < 0.0 and terms.normal[c] > 0.0):
+        return 0.0
+    return -terms.bias[c] - CONTACT_SOFTNESS * terms.normal[c] * contacts.impulse[c, 0]
 
 
 @inlined_kernel
@@ -271,30 +304,12 @@ def _slot_of(k: int, islands: BodyIslands, system: System) -> int:
 
 
 @inner_kernel
-def _lendable(island: int, islands: BodyIslands, system: System, state: State) -> float:
-    # What may be lent to an island [J]: to what begins to sink, and to what is stopped as it begins to rise.
-    sinks = 0.0
-    rises = 0.0
-    owes = 0.0
-    for k in range(islands.counts[MEMBERS]):
-        if islands.island[k] == island:
-            sinks += islands.ahead[k] - islands.moves[k]
-            rises += islands.rises[k]
-            owes -= min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
-    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)  # (29)
-
-
-@inner_kernel
-def check_energies(
+def check_energy(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows
 ) -> bool:  # fmt: skip
-    """Check the energy of every island; whether any fails."""
-    # Where the target of a free particle was relaxed, `v0` is below what forces left it.
+    """Tally the energy of an island and what is allowed; whether it passes the test."""
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
     bodies = islands.counts[BODIES]
-    for island in range(islands.counts[ISLANDS]):
-        islands.total[island] = 0.0
-        islands.allowed[island] = 0.0
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
         ux, uy = state.velocity[p, 0], state.velocity[p, 1]
@@ -308,22 +323,33 @@ def check_energies(
         if push.shape[0] > 0:
             of_joints = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
             islands.energy[bodies + i] -= 0.5 * of_joints
+    total = allowed = sinks = rises = borrows = 0.0
     for k in range(islands.counts[MEMBERS]):
-        islands.total[islands.island[k]] += islands.energy[k]
-        islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.budget[k]
+        total += islands.energy[k]
+        allowed += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.budget[k]
+        sinks += islands.ahead[k] - islands.moves[k]
+        rises += islands.rises[k]
+        borrows += islands.debt[k] + min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
     # What runs a belt does the work of its friction at the speed of its surface.
     for c in range(contacts.particle.shape[0]):
         work = -contacts.belt[c] * contacts.impulse[c, 1]
         k = _member_of(c, contacts, islands, state.inverse_mass) if work > 0.0 else -1
         if k >= 0:
-            if k < islands.counts[BODIES] and system.bodies.underdamped[islands.body[k]]:
+            if k < bodies and system.bodies.underdamped[islands.body[k]]:
                 work *= 1.0 + UNDERDAMPED_BUDGET_SHARE
-            islands.allowed[islands.island[k]] += work
-    for island in range(islands.counts[ISLANDS]):
-        islands.lent[island] = _lendable(island, islands, system, state)
-        islands.allowed[island] += islands.lent[island]
-        islands.fails[island] = not islands.total[island] <= islands.allowed[island]
-    return any_fails(islands)
+            allowed += work
+    # What may be lent: to what begins to sink, and to what is stopped as it begins to rise.
+    lent = max(0.0, min(max(0.0, sinks) + max(0.0, rises), borrows))  # (29)
+    islands.tally[0, TOTAL] = total
+    islands.tally[0, ALLOWED] = allowed + lent
+    islands.tally[0, LENT] = lent
+    return passes(islands)
+
+
+@inlined_kernel
+def passes(islands: BodyIslands) -> bool:
+    """Whether an island passed its last energy test."""
+    return islands.tally[0, TOTAL] <= islands.tally[0, ALLOWED]
 
 
 @inner_kernel
@@ -337,102 +363,166 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
 
 
 @inner_kernel
-def drop_biases(
-    contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, separates: bool, h: float
-) -> None:
-    """Restart contacts of islands that fail without impulse or bounce; they push apart only as far as budgets can pay.
-
-    separates: whether they push apart at all.
+def goes_on(islands: BodyIslands, system: System, h: float) -> bool:
+    """Whether an island that fails is to be solved again: lengths come nearer, or what springs can give back is too
+    much, too; if that is allowed, it passes.
     """
-    # From there each sweep that is not hastened takes energy: it lowers 1/2 J.W J + J.u, which is what contacts add.
-    islands = workspace.islands
-    for island in range(islands.counts[ISLANDS]):
-        islands.total[island] = 0.0
-        islands.allowed[island] = 0.0
-    for k in range(islands.counts[MEMBERS]):
-        islands.allowed[islands.island[k]] += islands.budget[k]
-    for c in range(contacts.particle.shape[0]):
-        k = _member_of(c, contacts, islands, inverse_mass)
-        if k >= 0:
-            islands.total[islands.island[k]] += _stored(c, contacts, workspace.terms, h)
-    for c in range(contacts.particle.shape[0]):
-        k = _member_of(c, contacts, islands, inverse_mass)
-        if k >= 0 and islands.fails[islands.island[k]]:
-            cost, saved = islands.total[islands.island[k]], islands.allowed[islands.island[k]]
-            pushed = 0.0
-            if separates and cost > 0.0:
-                pushed = _part_speed(contacts.gap[c], h) * math.sqrt(min(1.0, saved / cost))
-            workspace.terms.bias[c] = max(0.0, contacts.gap[c]) / h - pushed
-            contacts.impulse[c, 0] = 0.0
-            contacts.impulse[c, 1] = 0.0
-
-
-@inner_kernel
-def _slower(halving: int) -> float:
-    # What of all that moves a round of slowing down leaves of what joints alone drive: most fail by a hair.
-    if halving < DRIVEN_HALVINGS + 3:
-        return 0.999 if halving == DRIVEN_HALVINGS else 0.99 if halving == DRIVEN_HALVINGS + 1 else 0.9
-    return 0.5
-
-
-@inner_kernel
-def _damp_bodies(workspace: IslandWorkspace, system: System, state: State, halving: int, h: float) -> None:
-    # One halving of every body of an island that fails.
-    islands, bodies, rows = workspace.islands, system.bodies, system.rows
+    tally = islands.tally
+    excess, before = tally[0, TOTAL] - tally[0, ALLOWED], tally[0, EXCESS]
+    tally[0, EXCESS] = excess
+    if excess < FALLING * before:
+        return True
+    _take_off_unreturnable(islands, system, h)
+    if passes(islands):
+        return False
     for k in range(islands.counts[BODIES]):
-        if not islands.fails[islands.island[k]]:
-            continue
-        body = islands.body[k]
-        span = span_of(system, body)
-        if halving == 0:
-            islands.due[k] = True
-            # As it was found, not what terrain and triangles have left of it, which may lead nowhere.
-            for r in range(span.first_row, span.last_row):
-                islands.v_free[r, 0] += islands.impulse[r, 0]
-                islands.v_free[r, 1] += islands.impulse[r, 1]
-        turns = bodies.spin[body, INERTIA] > 0.0
-        # Contacts hold what is to stop, and springs what is to come back; joints alone drive what goes round.
-        fine = turns and islands.driven[k] and workspace.delassus.start[k] == workspace.delassus.start[k + 1]
-        if halving < INNER_HALVINGS or (fine and halving < DRIVEN_HALVINGS):
-            if turns:
-                damp_within(body, span, system, islands.v_free, 0.5, h)
-        elif fine and halving < DRIVEN_HALVINGS + 8:
-            # As one that is rigid, no length of which changes however fast it turns.
-            scale(span, _slower(halving), islands.v_free)
-            damp_within(body, span, system, islands.v_free, 0.0, h)
-        else:
-            scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.v_free)
-            copy(span, islands.v_free, rows.v)
-        clamp_rows(span, rows, state, h)
-        hold_triangles(span, system, h)
-        measure_body(k, span, system, workspace, body_energy(body, span, system, h), h)
+        kept = system.bodies.unreturnable[islands.body[k]]
+        islands.energy[k] += kept
+        tally[0, TOTAL] += kept
+        system.bodies.unreturnable[islands.body[k]] = 0.0
+    return abs(excess - before) > SETTLED * excess
 
 
 @inner_kernel
-def damp_islands(
+def _take_off_unreturnable(islands: BodyIslands, system: System, h: float) -> None:
+    for k in range(islands.counts[BODIES]):
+        body = islands.body[k]
+        kept = unreturnable(body, span_of(system, body), system, False, h)
+        islands.energy[k] -= kept
+        islands.tally[0, TOTAL] -= kept
+
+
+@inner_kernel
+def slow_down(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, h: float
 ) -> None:  # fmt: skip
-    """Slow down what moves within the bodies of islands that fail, else all that moves, until they pass."""
-    # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
-    islands, surface = workspace.islands, workspace.terms.surface
+    """Take off what an island moves beside the motion that nothing outside holds until it passes, by as little as that
+    asks for; at rest it passes always.
+    """
+    islands, rows = workspace.islands, system.rows
     bodies = islands.counts[BODIES]
+    motion, held = _motion_to_keep(contacts, workspace, system, state)
     for k in range(bodies):
-        islands.due[k] = False
-    for halving in range(LAST_HALVINGS + 1):
-        _damp_bodies(workspace, system, state, halving, h)
+        copy(span_of(system, islands.body[k]), rows.v, islands.v_free)
+    _take_off_unreturnable(islands, system, h)
+    ratio = first_ratio(
+        islands.tally[0, TOTAL] - islands.tally[0, ALLOWED], _energy_beside(motion, islands, system, state)
+    )
+    left = 1.0
+    for done in range(SLOWING_ROUNDS + LAST_HALVINGS + 1):
+        beside = done < SLOWING_ROUNDS
+        if not beside:
+            motion = RigidMotion(motion.x, motion.y, motion.u, motion.v, 0.0, 0.0)
+            ratio = 0.5 if done < SLOWING_ROUNDS + LAST_HALVINGS else 0.0
+        for k in range(bodies):
+            body = islands.body[k]
+            span = span_of(system, body)
+            if beside:
+                copy(span, islands.v_free, rows.v)
+            slow_beside(span, rows, motion, ratio, h)
+            clamp_rows(span, rows, state, h)
+            hold_triangles(span, system, h)
+            energy = body_energy(body, span, system, h) - unreturnable(body, span, system, keeps_lengths(done), h)
+            measure_body(k, span, system, workspace, energy, h)
+        # Free particles keep no copy: what is left of them follows from round to round.
+        factor = ratio / left if beside and left > 0.0 else ratio
         for i in range(islands.counts[MEMBERS] - bodies):
-            if halving >= INNER_HALVINGS and islands.fails[islands.island[bodies + i]]:
-                p = islands.free[i]
-                factor = 0.5 if halving < LAST_HALVINGS else 0.0
-                for axis in range(2):
-                    v = islands.v0[p, axis] + islands.delta_v[p, axis]
-                    islands.delta_v[p, axis] = factor * v - islands.v0[p, axis]
-                surface[p] *= factor
-        if not check_energies(contacts, workspace, system, state, start):
+            p = islands.free[i]
+            u, v = chord_at(motion, state.position[p, 0], state.position[p, 1], h)
+            vx, vy = islands.v0[p, 0] + islands.delta_v[p, 0], islands.v0[p, 1] + islands.delta_v[p, 1]
+            islands.delta_v[p, 0] = u + factor * (vx - u) - islands.v0[p, 0]
+            islands.delta_v[p, 1] = v + factor * (vy - v) - islands.v0[p, 1]
+            if held:
+                workspace.terms.surface[p] *= factor
+        left = ratio
+        if check_energy(contacts, workspace, system, state, start):
             break
+        if beside:
+            ratio = next_ratio(ratio, done)
     for k in range(bodies):
-        if islands.due[k]:
-            find_tension(span_of(system, islands.body[k]), system, h)
+        find_tension(span_of(system, islands.body[k]), system, h)
+
+
+@inner_kernel
+def _motion_to_keep(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State
+) -> tuple[RigidMotion, bool]:
+    # The rigid motion of an island's momenta; of what smooth ground carries the velocity along that; rest, and True,
+    # where something outside holds it.
+    islands = workspace.islands
+    rest = RigidMotion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    nx = ny = 0.0
+    for k in range(islands.counts[BODIES]):
+        if system.bodies.pivot[islands.body[k]] != -1:
+            return rest, True
+    for c in range(contacts.particle.shape[0]):
+        inside, outside = False, contacts.end_a[c] < 0 and contacts.end_b[c] < 0
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            inside = inside or (p >= 0 and state.inverse_mass[p] > 0.0)
+            outside = outside or (p >= 0 and not state.inverse_mass[p] > 0.0)
+        if not (inside and outside and contacts.impulse[c, 0] > 0.0):
+            continue
+        cross = nx * contacts.normal[c, 1] - ny * contacts.normal[c, 0]
+        if contacts.impulse[c, 1] != 0.0 or abs(cross) > PARALLEL:
+            return rest, True
+        nx, ny = contacts.normal[c, 0], contacts.normal[c, 1]
+    # Hands and joints that push from outside: their gradient does not sum up to 0.
+    joints, rows = workspace.delassus.joints, workspace.delassus.joints.rows
+    for i in range(joints.listed.shape[0]):
+        x = y = size = 0.0
+        for e in range(rows.first[joints.listed[i]], rows.first[joints.listed[i] + 1]):
+            x += rows.gradient[e, 0]
+            y += rows.gradient[e, 1]
+            size += abs(rows.gradient[e, 0]) + abs(rows.gradient[e, 1])
+        if abs(x) + abs(y) > WITHIN * size:
+            return rest, True
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
+    for i in range(_points(islands, system)):
+        p, u, v = _point(i, islands, system)
+        sums = with_point(sums, state.mass[p], state.position[p, 0], state.position[p, 1], u, v)
+    motion = centre_of(sums)
+    if nx != 0.0 or ny != 0.0:
+        along = motion.v * nx - motion.u * ny
+        return RigidMotion(motion.x, motion.y, -along * ny, along * nx, 0.0, 0.0), False
+    for i in range(_points(islands, system)):
+        p, u, v = _point(i, islands, system)
+        motion = with_turn(motion, state.mass[p], state.position[p, 0], state.position[p, 1], u, v)
+    return motion, False
+
+
+@inner_kernel
+def _points(islands: BodyIslands, system: System) -> int:
+    # How many points an island has: rows of its bodies, then free particles.
+    count = islands.counts[MEMBERS] - islands.counts[BODIES]
+    for k in range(islands.counts[BODIES]):
+        span = span_of(system, islands.body[k])
+        count += span.last_row - span.first_row
+    return count
+
+
+@inner_kernel
+def _point(i: int, islands: BodyIslands, system: System) -> tuple[int, float, float]:
+    # The particle of a point, and its velocity after the step.
+    for k in range(islands.counts[BODIES]):
+        span = span_of(system, islands.body[k])
+        if i < span.last_row - span.first_row:
+            r = span.first_row + i
+            return system.rows.particle[r], system.rows.v[r, 0], system.rows.v[r, 1]
+        i -= span.last_row - span.first_row
+    p = islands.free[i]
+    return p, islands.v0[p, 0] + islands.delta_v[p, 0], islands.v0[p, 1] + islands.delta_v[p, 1]
+
+
+@inner_kernel
+def _energy_beside(motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> float:
+    # T: the kinetic energy [J] of what an island moves beside a motion.
+    total = 0.0
+    for i in range(_points(islands, system)):
+        p, vx, vy = _point(i, islands, system)
+        u, v = velocity_at(motion, state.position[p, 0], state.position[p, 1])
+        total += 0.5 * state.mass[p] * ((vx - u) * (vx - u) + (vy - v) * (vy - v))
+    return total
 
 
 @inner_kernel
@@ -449,63 +539,48 @@ def _held(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> fl
 
 
 @inner_kernel
-def _settle_loans(workspace: IslandWorkspace, system: System, state: State) -> None:
-    # Overdraw reserves by what was lent and used, each by its mass; and pay back from what was lost.
+def _settle_loans(workspace: IslandWorkspace, system: System, state: State, mass: float) -> float:
+    # Overdraw reserves by what was lent and used, each by its mass, or pay back from what was lost; the rest of that.
     islands, reserves = workspace.islands, state.parting_reserve
-    for island in range(islands.counts[ISLANDS]):
-        mass = 0.0
-        for k in range(islands.counts[MEMBERS]):
-            mass += islands.mass[k] if islands.island[k] == island else 0.0
-        islands.allowed[island] -= islands.lent[island]
-        used = min(islands.lent[island], islands.total[island] - islands.allowed[island])
-        for k in range(islands.counts[MEMBERS]):
-            if islands.island[k] != island:
-                continue
-            slot = _slot_of(k, islands, system)
-            if used > 0.0:
-                reserves[slot] -= used * islands.mass[k] / mass
-            else:
-                paid = max(0.0, min(-reserves[slot], islands.allowed[island] - islands.total[island]))
-                reserves[slot] += paid
-                islands.allowed[island] -= paid
+    lost = islands.tally[0, ALLOWED] - islands.tally[0, LENT] - islands.tally[0, TOTAL]
+    used = min(islands.tally[0, LENT], -lost)
+    for k in range(islands.counts[MEMBERS]):
+        slot = _slot_of(k, islands, system)
+        if used > 0.0:
+            reserves[slot] -= used * islands.mass[k] / mass
+        else:
+            paid = max(0.0, min(-reserves[slot], lost))
+            reserves[slot] += paid
+            lost -= paid
+    return lost
 
 
 @inner_kernel
 def store_energies(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    """Store the rest of each island's allowed energy, up to the limits of its budgets."""
+    """Store the rest of an island's allowed energy, up to the limits of its budgets."""
     islands, bodies = workspace.islands, system.bodies
-    _settle_loans(workspace, system, state)
-    # The most that each budget may hold: a share of the member's energy; or by its mass what contacts hold, of what it
-    # has itself lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of
-    # that what forces take from it as it slowly rises.
     held = mass = 0.0
     for c in range(contacts.particle.shape[0]):
         held += _held(c, contacts, workspace.terms, h)
     for k in range(islands.counts[MEMBERS]):
         mass += islands.mass[k]
+    left = _settle_loans(workspace, system, state, mass)
+    # The most that each budget may hold: a share of the member's energy; or by its mass what contacts hold, of what it
+    # has itself lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of
+    # that what forces take from it as it slowly rises.
     for k in range(islands.counts[MEMBERS]):
-        most = (
-            budget_limit(islands.body[k], system) if k < islands.counts[BODIES] else BUDGET_SHARE * islands.energy0[k]
-        )
+        is_body = k < islands.counts[BODIES]
+        most = budget_limit(islands.body[k], system) if is_body else BUDGET_SHARE * islands.energy0[k]
         lost = islands.budget[k] + islands.energy0[k] - islands.energy[k]
         least = min(held / mass, 0.5 * PAID_PUSH * PAID_PUSH) * islands.mass[k]
-        islands.limit[k] = max(most, min(least, lost))
-        islands.limit[k] += max(0.0, min(-islands.ahead[k] - islands.moves[k], lost))
-    for k in range(islands.counts[MEMBERS]):
-        island = islands.island[k]
-        limit = islands.limit[k]
-        is_body = k < islands.counts[BODIES]
-        # As in solve.py: an inverted body keeps all that it lost for the way back to its form.
+        limit = max(most, min(least, lost)) + max(0.0, min(-islands.ahead[k] - islands.moves[k], lost))
+        # As in step_body.py: an inverted body keeps all that it lost for the way back to its form.
         if is_body and bodies.inverted[islands.body[k]] and not bodies.anchored[islands.body[k]]:
-            limit = max(limit, islands.budget[k] + islands.energy0[k] - islands.energy[k])
-        stored = max(0.0, min(islands.allowed[island] - islands.total[island], limit))
-        islands.allowed[island] -= stored
-        if is_body:
-            state.energy_bank[bodies.lowest[islands.body[k]]] = stored
-        else:
-            state.energy_bank[islands.free[k - islands.counts[BODIES]]] = stored
+            limit = max(limit, lost)
+        stored = max(0.0, min(left, limit))
+        left -= stored
+        state.energy_bank[_slot_of(k, islands, system)] = stored
     for k in range(islands.counts[BODIES]):
-        island = islands.island[k]
         body = islands.body[k]
-        excess = islands.allowed[island] - islands.total[island]
-        islands.allowed[island] = islands.total[island] + reserve(body, span_of(system, body), system, state, excess)
+        state.unreturnable[bodies.lowest[body]] = bodies.unreturnable[body]
+        left = reserve(body, span_of(system, body), system, state, left)

@@ -29,6 +29,9 @@ BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS, COUNTED = range(6)
 # that wants more, because much of it lies on something, has none: in the sweeps its particles answer by their own
 # masses, and between them by its springs. Less leaves what is large soft where it lands.
 DEAREST_BLOCK = 4_000_000
+# Columns of `tally`: the energy of an island's members, what that may be, what of this is lent; and what was too much
+# after the last solve.
+TOTAL, ALLOWED, LENT, EXCESS, TALLIED = range(5)
 
 
 class BodyIslands(NamedTuple):
@@ -42,14 +45,13 @@ class BodyIslands(NamedTuple):
     counts: Slots  # (5,): how many there are
     body: Slots  # their numbers
     free: Slots  # slots of particles
-    island: Slots  # by member, as all from mass to fresh
     member: Slots  # (n,) by particle, -1: none
     row: Slots  # (n,) by particle: its row in the matrix, -1: none
-    mass: Floats  # [kg]
+    mass: Floats  # [kg]: by member, as all down to fresh
     energy0: Floats  # [J]: where the step begins
     budget: Floats  # [J]: in its energy budget
     energy: Floats  # [J]: where the step ends
-    limit: Floats  # [J]: of its budget
+    debt: Floats  # [J]: the most it may owe
     ahead: Floats  # [J]: work of forces in half a step at v'
     moves: Floats  # [J]: KE(v')
     rises: Floats  # [J]: what it seems to gain if it is stopped
@@ -62,14 +64,8 @@ class BodyIslands(NamedTuple):
     still: Flags  # pressed and slow
     driven: Flags  # a joint acts on it
     by_mass: Flags  # it has no block, see DEAREST_BLOCK
-    total: Floats  # [J] by island, as all down to way: energy of its members
-    allowed: Floats  # [J]: what that may be (island_energy.py)
-    lent: Floats  # [J]: part of that
-    fails: Flags
-    held: Flags  # something outside holds it
-    parts: Flags  # something in it overlaps deeply
-    excess: Floats  # [J]: what it had too much (energy_budget.py)
-    way: Slots  # see system.py
+    tally: FloatRows  # (islands, TALLIED) [J]: see TOTAL
+    way: Slots  # by island: see system.py
     v_free: FloatRows  # [m/s] by row: velocities without contacts
     impulse: FloatRows  # [N s] by row: of contacts and joints; then the change by it [m/s]
     v0: FloatRows  # [m/s] (n,) by particle: velocities without contacts
@@ -105,14 +101,13 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
     bodies, free_rows = system.bodies.lowest.shape[0], system.matrix.diagonal.shape[0]
     members = bodies + particles
     islands = BodyIslands(
-        new_slots(arena, COUNTED), new_slots(arena, bodies), new_slots(arena, particles), new_slots(arena, members),
+        new_slots(arena, COUNTED), new_slots(arena, bodies), new_slots(arena, particles),
         new_slots(arena, particles), new_slots(arena, particles), new_floats(arena, members),
         new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
         new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
         new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
         new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
-        new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
-        new_flags(arena, members), new_flags(arena, members), new_floats(arena, members), new_slots(arena, members),
+        new_float_rows(arena, members, TALLIED), new_slots(arena, members),
         new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2), new_float_rows(arena, particles, 2),
         new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
         new_flags(arena, particles),
@@ -350,12 +345,10 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
     k, m = b + f, c + g
     joints = delassus.joints
     islands = BodyIslands(
-        lists.counts[COUNTED * i : COUNTED * (i + 1)], w.body[b:c], w.free[f:g], w.island[k:m], w.member, w.row,
-        w.mass[k:m], w.energy0[k:m], w.budget[k:m], w.energy[k:m], w.limit[k:m], w.ahead[k:m], w.moves[k:m],
+        lists.counts[COUNTED * i : COUNTED * (i + 1)], w.body[b:c], w.free[f:g], w.member, w.row,
+        w.mass[k:m], w.energy0[k:m], w.budget[k:m], w.energy[k:m], w.debt[k:m], w.ahead[k:m], w.moves[k:m],
         w.rises[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c], w.rigid[b:c], w.firm[b:c], w.pressed[b:c], w.still[b:c],
-        w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.lent[i : i + 1],
-        w.fails[i : i + 1],
-        w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.v_free, w.impulse, w.v0,
+        w.driven[b:c], w.by_mass[b:c], w.tally[i : i + 1], w.way[i : i + 1], w.v_free, w.impulse, w.v0,
         w.delta_v, w.label, w.root, w.marked,
     )  # fmt: skip
     return IslandWorkspace(

@@ -18,6 +18,7 @@ since the geometric stiffness of what pushes is left out.
 """
 
 from sandbox.physics.arrays import FloatRows
+from sandbox.physics.geometry.rigid import WeightedSums, centre_of, velocity_at, with_point, with_turn
 from sandbox.physics.integrate import SLOW_SHARE
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import (
@@ -30,6 +31,8 @@ from sandbox.physics.solvers.direct.constraint_terms import (
     linearise_constraints,
     load_constraints,
     push_constraints,
+    restore_constraints,
+    unrestored_constraint_energy,
     update_constraints,
 )
 from sandbox.physics.solvers.direct.spring_terms import (
@@ -38,12 +41,14 @@ from sandbox.physics.solvers.direct.spring_terms import (
     linearise_springs,
     load_springs,
     push_springs,
+    restore_springs,
     spring_objective,
     spring_potential,
     spring_slope,
+    unrestored_energy,
     update_springs,
 )
-from sandbox.physics.solvers.direct.system import Rows, Span, System, copy, hold_triangles, scale
+from sandbox.physics.solvers.direct.system import Rows, Span, System, copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts, solve_fronts
 from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
@@ -98,16 +103,48 @@ def load(
 
     free: nothing of it is pinned. See `load_springs`.
     """
-    rows = system.rows
-    # Gravity moves a body without anchors as a whole: started there, it falls without rounding.
-    if free:
-        copy(span, rows.v_star, rows.v)
     underdamped, moved = load_springs(span, system, state, inputs, auto_substeps, h)
     if span.last_constraint > span.first_constraint:
         more_underdamped, more_moved = load_constraints(span, system, state, inputs, auto_substeps, h)
         underdamped = underdamped or more_underdamped
         moved += more_moved
+    if free:
+        _predict(span, system, h)
     return underdamped, moved
+
+
+@inner_kernel
+def _predict(span: Span, system: System, h: float) -> None:
+    # A first guess of the end of the step of a body without anchors, in `v`. Gravity moves it as a whole: started at v*
+    # it falls without rounding. What pulls at a part of it moves that alone or all of it: what f says.
+    rows = system.rows
+    copy(span, rows.v_star, rows.v)
+    first = span.first_row
+    x, y = rows.v_star[first, 0] - rows.start[first, 0], rows.v_star[first, 1] - rows.start[first, 1]
+    differs = False
+    for r in range(first, span.last_row):
+        differs = differs or rows.v_star[r, 0] - rows.start[r, 0] != x or rows.v_star[r, 1] - rows.start[r, 1] != y
+    if not differs:
+        return
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
+    for r in range(first, span.last_row):
+        sums = with_point(
+            sums, rows.mass[r], rows.position[r, 0], rows.position[r, 1], rows.v_star[r, 0] - rows.start[r, 0],
+            rows.v_star[r, 1] - rows.start[r, 1],
+        )  # fmt: skip
+    motion = centre_of(sums)
+    for r in range(first, span.last_row):
+        motion = with_turn(
+            motion, rows.mass[r], rows.position[r, 0], rows.position[r, 1], rows.v_star[r, 0] - rows.start[r, 0],
+            rows.v_star[r, 1] - rows.start[r, 1],
+        )  # fmt: skip
+    alone = objective(span, system, h)
+    for r in range(first, span.last_row):
+        u, v = velocity_at(motion, rows.position[r, 0], rows.position[r, 1])
+        rows.v[r, 0] = rows.start[r, 0] + u
+        rows.v[r, 1] = rows.start[r, 1] + v
+    if not objective(span, system, h) < alone:
+        copy(span, rows.v_star, rows.v)
 
 
 @inner_kernel
@@ -291,6 +328,27 @@ def potential(span: Span, system: System, position: FloatRows, velocity: FloatRo
     return spring_potential(span, system, position, velocity, springs.k_h2, springs.rest, time, h) + _constraint_energy(
         span, system, position, velocity, time, h
     )
+
+
+@inner_kernel
+def returnable(span: Span, system: System, h: float) -> float:
+    """What a body's springs and constraints can give back after the step [J].
+
+    |D|^2_M / 2 of the motion D that restores them, which the factor of the last linear solve finds, and what they hold
+    then.
+    """
+    rows = system.rows
+    for r in range(span.first_row, span.last_row):
+        rows.delta_v[r, 0] = 0.0
+        rows.delta_v[r, 1] = 0.0
+    restore_springs(span, system, h)
+    push_springs(span, system)
+    if span.last_constraint > span.first_constraint:
+        restore_constraints(span, system, h)
+        push_constraints(span, system)
+    solve_again(span, system)
+    unrestored = unrestored_energy(span, system, h) + unrestored_constraint_energy(span, system, h)
+    return kinetic(span, rows.mass, rows.delta_v) + unrestored
 
 
 @inner_kernel

@@ -190,13 +190,6 @@ def load_velocities(islands: BodyIslands, joints: Joints) -> None:
 
 
 @inner_kernel
-def release_joints(joints: Joints) -> None:
-    """Set the impulses of the joints of an island that fails to 0."""
-    for i in range(joints.listed.shape[0]):
-        joints.rows.impulse[joints.listed[i]] = 0.0
-
-
-@inner_kernel
 def work_of_joints(span: Span, rows: Rows, push: FloatRows) -> float:
     """The work of joints on one body [J]: that of their impulses at the mean of the velocities before and after."""
     # At v' alone, what just begins to move would fail the test by a hair and stick.

@@ -20,6 +20,7 @@ from sandbox.physics.geometry.rigid import (
     centre_of,
     momentum_about,
     rotated,
+    turn_rate,
     with_point,
     with_turn,
 )
@@ -373,41 +374,20 @@ def add_torque(span: Span, rows: Rows, spin: RigidMotion, torque: float, vector:
         vector[r, 1] += rows.mass[r] * rate * (rows.position[r, 0] - spin.x)
 
 
-@inner_kernel
-def damp_within(body: int, span: Span, system: System, found: FloatRows, ratio: float, h: float) -> None:
-    """Scale what moves in `v` within a body by a share, beside the rigid motion of its momenta.
-
-    found (n, 2) [m/s]: the velocities whose momenta those are.
-    """
-    rows = system.rows
-    spin = spin_of_body(body, system)
-    total = u = v = momentum = 0.0
-    for r in range(span.first_row, span.last_row):
-        m = rows.mass[r]
-        total += m
-        u += m * found[r, 0]
-        v += m * found[r, 1]
-        momentum += m * ((rows.position[r, 0] - spin.x) * found[r, 1] - (rows.position[r, 1] - spin.y) * found[r, 0])
-    if system.bodies.pivot[body] >= 0:
-        u = 0.0
-        v = 0.0
-    else:
-        u *= 1.0 / total
-        v *= 1.0 / total
-    halve_within(span, rows, RigidMotion(spin.x, spin.y, u, v, spin.inertia, momentum), ratio, h, rows.v)
-
-
-@inner_kernel
-def halve_within(span: Span, rows: Rows, spin: RigidMotion, ratio: float, h: float, vector: FloatRows) -> None:
-    """Scale velocities by a share, beside the rigid motion that keeps a body's momenta and all its lengths."""
-    # v = V + (R - 1) r / h,  whose angular momentum is I sin / h
-    sine = h * spin.momentum / spin.inertia
-    sine = min(max(sine, -1.0), 1.0)
+@inlined_kernel
+def chord_at(motion: RigidMotion, x: float, y: float, h: float) -> tuple[float, float]:
+    """The velocity [m/s] at (x, y) at which a step of h [s] turns a rigid body and keeps its lengths."""
+    # V + (R - 1) r / h, whose angular momentum is I sin / h
+    sine = min(max(h * turn_rate(motion), -1.0), 1.0)
     cosine = math.sqrt(1.0 - sine * sine)
+    dx, dy = x - motion.x, y - motion.y
+    return motion.u + ((cosine - 1.0) * dx - sine * dy) / h, motion.v + (sine * dx + (cosine - 1.0) * dy) / h
+
+
+@inner_kernel
+def slow_beside(span: Span, rows: Rows, motion: RigidMotion, ratio: float, h: float) -> None:
+    """Scale what `v` moves beside a rigid motion."""
     for r in range(span.first_row, span.last_row):
-        dx = rows.position[r, 0] - spin.x
-        dy = rows.position[r, 1] - spin.y
-        x = spin.u + ((cosine - 1.0) * dx - sine * dy) / h
-        y = spin.v + (sine * dx + (cosine - 1.0) * dy) / h
-        vector[r, 0] = x + ratio * (vector[r, 0] - x)
-        vector[r, 1] = y + ratio * (vector[r, 1] - y)
+        u, v = chord_at(motion, rows.position[r, 0], rows.position[r, 1], h)
+        rows.v[r, 0] = u + ratio * (rows.v[r, 0] - u)
+        rows.v[r, 1] = v + ratio * (rows.v[r, 1] - v)

@@ -35,32 +35,30 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
 )
 from sandbox.physics.solvers.direct.energy_budget import (
     MORE_SOLVES,
-    begin_relaxation,
     is_new,
-    note_excess,
-    relax_targets,
-    restore_targets,
 )
 from sandbox.physics.solvers.direct.island_energy import (
-    any_fails,
-    check_energies,
+    check_energy,
     clamp_free,
     clamp_rows,
-    count_ways,
     credit_penetration,
-    damp_islands,
     draw_on_reserves,
-    drop_biases,
+    goes_on,
+    limit_pushes,
     measure_body,
-    note_way,
     open_free,
+    passes,
+    slow_down,
     store_energies,
     weigh_body,
 )
 from sandbox.physics.solvers.direct.islands import (
+    ALLOWED,
     BODIES,
+    EXCESS,
     ISLANDS,
     MEMBERS,
+    TOTAL,
     BodyIslands,
     IslandWorkspace,
     alone,
@@ -85,7 +83,6 @@ from sandbox.physics.solvers.direct.response import (
     load_block,
     load_velocities,
     open_joints,
-    release_joints,
 )
 from sandbox.physics.solvers.direct.rigid_turn import (
     add_torque,
@@ -95,16 +92,13 @@ from sandbox.physics.solvers.direct.rigid_turn import (
     torque_of,
     turn_to,
 )
-from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body, release_shape, step_bodies
+from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body, step_bodies
 from sandbox.physics.solvers.direct.system import (
-    MINIMISED,
     SLOWED_DOWN,
     SOLVED_ON,
     Span,
     System,
-    copy,
     hold_triangles,
-    scale,
     span_of,
 )
 from sandbox.physics.solvers.inputs import Inputs
@@ -132,11 +126,6 @@ FIRM = 0.5
 # Contacts that press a body by so many times what forces do in a step turn it by as much as it turns, as directions
 # ahead have it: from 60 on it shakes.
 PRESSED = 20.0
-# Solves in which contacts only hold.
-SOLVES_WITHOUT_BIAS = 2
-# Linear solves more, while an island with a joint fails its energy test: wheels turn fast. With none of them a cart of
-# 120 kg fails in 9 to 61 of 240 steps, is slowed down, and drives at a fifth of its speed.
-DRIVEN_SOLVES = 5
 spring_constant = implicit_spring_constant
 
 
@@ -179,15 +168,11 @@ def _solve_island(
     _open(workspace, system, state, inputs, auto_substeps, h)
     _find_pressed(contacts, system, islands)
     affordable = int(WORK * h) // max(1, _cost_of(contacts, workspace, system))
-    affordable = _solve_linearly(contacts, workspace, system, state, start, affordable, h)
-    if any_fails(islands):
-        affordable = _solve_relaxed(contacts, workspace, system, state, start, affordable, h)
-    if any_fails(islands):
-        _solve_without_bias(contacts, workspace, system, state, start, affordable, h)
-    if any_fails(islands):
-        note_way(SLOWED_DOWN, islands)
-        damp_islands(contacts, workspace, system, state, start, h)
-    count_ways(islands, workspace.ways)
+    _solve_linearly(contacts, workspace, system, state, start, affordable, h)
+    if not passes(islands):
+        islands.way[0] = SLOWED_DOWN
+        slow_down(contacts, workspace, system, state, start, h)
+    workspace.ways[islands.way[0]] += 1
     store_energies(contacts, workspace, system, state, h)
     _finish(islands, workspace.terms.surface, system, state)
 
@@ -262,21 +247,21 @@ def _cost_of(contacts: Contacts, workspace: IslandWorkspace, system: System) -> 
 def _solve_linearly(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
     h: float,
-) -> int:  # fmt: skip
-    # Linear solves while springs miss the lengths predicted or the test fails; the sweeps left.
+) -> None:  # fmt: skip
+    # Linear solves while springs miss the lengths predicted, or the test fails and they are of use.
     islands = workspace.islands
-    most = LINEAR_SOLVES + (DRIVEN_SOLVES if workspace.delassus.joints.listed.shape[0] > 0 else 0)
-    for solve in range(most):
-        if solve >= LINEAR_SOLVES and not any_fails(islands):
-            break
-        note_excess(islands)
+    islands.tally[0, EXCESS] = 0.0
+    for solve in range(LINEAR_SOLVES + MORE_SOLVES):
         _solve_due(workspace, system, h, AHEAD, AHEAD)
-        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, True, solve == 0, h)
-        if solve == 0:
-            note_way(SOLVED_ON, islands)
-        if not _find_due(islands, solve < LINEAR_SOLVES - 1 and affordable > 0, h) or affordable <= 0:
+        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, solve == 0, h)
+        fails = not passes(islands)
+        islands.way[0] = SOLVED_ON if fails else islands.way[0]
+        if fails and solve >= LINEAR_SOLVES - 1:
+            fails = goes_on(islands, system, h)
+        elif fails:
+            islands.tally[0, EXCESS] = islands.tally[0, TOTAL] - islands.tally[0, ALLOWED]
+        if affordable <= 0 or not _find_due(islands, fails, solve < LINEAR_SOLVES - 1, h):
             break
-    return affordable
 
 
 @inner_kernel
@@ -324,24 +309,21 @@ def _is_still(k: int, span: Span, system: System, islands: BodyIslands) -> bool:
 @inner_kernel
 def _push_and_test(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
-    accelerate: bool, begins: bool, h: float,
+    begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
     sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
     most = max(sweeps, min(CALM_SWEEPS, affordable))
-    done = _push_all(contacts, workspace, system, state, sweeps, most, affordable, accelerate, begins, h)
-    if begins:
-        credit_penetration(contacts, workspace, state.inverse_mass, h)
-        draw_on_reserves(contacts, workspace, system, state)
+    done = _push_all(contacts, workspace, system, state, sweeps, most, affordable, begins, h)
     _apply_impulses(workspace, system, state, h)
-    check_energies(contacts, workspace, system, state, start)
+    check_energy(contacts, workspace, system, state, start)
     return affordable - done
 
 
 @inner_kernel
 def _push_all(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, sweeps: int, most: int,
-    affordable: int, accelerate: bool, begins: bool, h: float,
+    affordable: int, begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Sweep an island's contacts and joints, and look for impacts before where the step begins; what it took, in sweeps.
     # The impulses J^T lambda of bodies are left in `impulse`.
@@ -351,18 +333,21 @@ def _push_all(
     couple_joints(joints)
     _clear(islands, system, terms.surface, state)
     if begins:
+        credit_penetration(contacts, workspace, state.inverse_mass, h)
+        draw_on_reserves(contacts, workspace, system, state)
+        limit_pushes(contacts, workspace, h)
         mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid, islands.firm)
         propagate_impacts(contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, joints)
-    # Sweeps that are not hastened take energy, each of them; and joints change what an exact solve has found.
-    exactly = float(affordable) if accelerate and joints.listed.shape[0] == 0 else 0.0
+    # Joints change what an exact solve has found.
+    exactly = float(affordable) if joints.listed.shape[0] == 0 else 0.0
     if has_coarse(islands):
         done = _sweep_by_mass(contacts, workspace, system, state, min(SWEEPS_BY_MASS, most))
     else:
         done = solve_contacts(
             contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
-            float(_cost_of(contacts, workspace, system)), accelerate,
+            float(_cost_of(contacts, workspace, system)),
         )  # fmt: skip
     gather_push(joints)
     for i in range(joints.listed.shape[0]):
@@ -477,62 +462,14 @@ def _apply_impulses(workspace: IslandWorkspace, system: System, state: State, h:
 
 
 @inner_kernel
-def _find_due(islands: BodyIslands, misses: bool, h: float) -> bool:
-    # Bodies are due whose islands fail, and if it matters those whose springs miss the lengths predicted; whether
-    # anything fails or misses.
-    found = any_fails(islands)
+def _find_due(islands: BodyIslands, fails: bool, misses: bool, h: float) -> bool:
+    # All bodies are due if the test fails, and if it matters those whose springs miss the lengths predicted.
+    found = fails
     for k in range(islands.counts[BODIES]):
         missed = misses and islands.misfit[k] > MISFIT_RATE * h * h
-        islands.due[k] = missed or islands.fails[islands.island[k]]
+        islands.due[k] = missed or fails
         found = found or missed
     return found
-
-
-@inner_kernel
-def _solve_relaxed(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
-    h: float,
-) -> int:  # fmt: skip
-    # More of them, for relaxed targets; the sweeps left.
-    begin_relaxation(contacts, workspace, system, state)
-    for _solve in range(MORE_SOLVES):
-        if affordable <= 0 or not relax_targets(workspace, system, state):
-            break
-        _solve_due(workspace, system, h, AHEAD, AHEAD)
-        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, True, False, h)
-        if not _find_due(workspace.islands, False, h):
-            break
-    return affordable
-
-
-@inner_kernel
-def _solve_without_bias(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
-    h: float,
-) -> None:  # fmt: skip
-    # Contacts only hold, at Newton steps on f from v* and from rest: the last one takes energy if it is made short
-    # enough.
-    islands, bodies, rows = workspace.islands, system.bodies, system.rows
-    for solve in range(0 if affordable > 0 else SOLVES_WITHOUT_BIAS - 1, SOLVES_WITHOUT_BIAS):
-        note_way(MINIMISED, islands)
-        restore_targets(workspace, system, state)
-        drop_biases(contacts, workspace, state.inverse_mass, solve == 0, h)
-        release_joints(workspace.delassus.joints)
-        # What fails is brought there, without its shape matching.
-        for k in range(islands.counts[BODIES]):
-            if islands.due[k]:
-                body = islands.body[k]
-                span = span_of(system, body)
-                copy(span, rows.v_star, rows.v)
-                copy(span, rows.v_star, rows.v_star_matched)
-                scale(span, 1.0 if solve == 0 else 0.0, rows.v)
-                if bodies.matched[body]:
-                    release_shape(span, rows)
-                    bodies.matched[body] = False
-        _solve_due(workspace, system, h, 1.0, 0.0)
-        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, False, False, h)
-        if not _find_due(islands, False, h):
-            break
 
 
 @inner_kernel

@@ -204,6 +204,78 @@ def push_springs(span: Span, system: System) -> None:
 
 
 @inner_kernel
+def restore_springs(span: Span, system: System, h: float) -> None:
+    """The impulses that bring a body's springs to their lengths from where `v` leads to, for `push_springs`.
+
+    They act along the directions of the last linear solve, whose factor is to answer.
+    """
+    rows, springs = system.rows, system.springs
+    for k in range(span.first_spring, span.last_spring):
+        dx, dy = difference(springs.row_a[k], springs.row_b[k], rows.position)
+        ux, uy = difference(springs.row_a[k], springs.row_b[k], rows.v)
+        dx += h * ux
+        dy += h * uy
+        springs.predicted[k] = math.sqrt(dx * dx + dy * dy) - springs.rest[k]
+        springs.tangential[k] = 0.0
+        mass = reduced_mass(rows.inverse_mass[springs.row_a[k]], rows.inverse_mass[springs.row_b[k]])
+        springs.impulse[k] = -restoring_mass(springs.K[k], springs.k_h2[k], mass) * springs.predicted[k] / h
+
+
+@inner_kernel
+def unrestored_energy(span: Span, system: System, h: float) -> float:
+    """What a body's springs hold [J] once the motion in `delta_v` has restored them, each no stiffer than what it
+    moves.
+    """
+    rows, springs = system.rows, system.springs
+    free_count = system.matrix.diagonal.shape[0]
+    total = 0.0
+    for k in range(span.first_spring, span.last_spring):
+        a = springs.row_a[k]
+        b = springs.row_b[k]
+        error = springs.predicted[k] / h
+        if b < free_count:
+            error += springs.normal[k, 0] * rows.delta_v[b, 0] + springs.normal[k, 1] * rows.delta_v[b, 1]
+        if a < free_count:
+            error -= springs.normal[k, 0] * rows.delta_v[a, 0] + springs.normal[k, 1] * rows.delta_v[a, 1]
+        mass = reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
+        total += 0.5 * moved_mass(springs.k_h2[k], mass) * error * error
+    return total
+
+
+@inner_kernel
+def largest_strain(span: Span, system: System, h: float) -> float:
+    """The largest share of its length by which a spring of a body is wrong at the end of the step."""
+    rows, springs = system.rows, system.springs
+    most = 0.0
+    for k in range(span.first_spring, span.last_spring):
+        dx, dy = difference(springs.row_a[k], springs.row_b[k], rows.position)
+        ux, uy = difference(springs.row_a[k], springs.row_b[k], rows.v)
+        dx += h * ux
+        dy += h * uy
+        extent = springs.rest[k] + springs.length[k]
+        if extent > SHORTEST:
+            most = max(most, 2.0 * abs(math.sqrt(dx * dx + dy * dy) - springs.rest[k]) / extent)
+    return most
+
+
+@scalar_kernel
+def restoring_mass(stiff: float, restoring: float, mass: float) -> float:
+    """With what [kg] an error counts in A D = right side, so that D is the motion that lowers |D|^2_M + PE most.
+
+    For one spring alone this is exact; stiff: K, restoring: K beta, mass: effective.
+    """
+    return restoring * (mass + stiff) / (mass + restoring) if mass > 0.0 else 0.0
+
+
+@scalar_kernel
+def moved_mass(restoring: float, mass: float) -> float:
+    """With what [kg] an error of one spring alone counts, of which all can come back: the lower of K beta and its
+    mass, roughly.
+    """
+    return restoring * mass / (mass + restoring) if mass > 0.0 else 0.0
+
+
+@inner_kernel
 def update_springs(span: Span, system: System, h: float) -> tuple[float, float, bool]:
     """Bring one body's springs to `v`, which D has been added to: J = q - K n.(D_b - D_a), the like across, x'.
 

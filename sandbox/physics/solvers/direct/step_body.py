@@ -2,8 +2,8 @@
 
 A step is one linear solve with the springs' directions taken ahead of the present ones, less the slow part of the
 velocity: that damps fast vibration and leaves slow turning alone. It is taken only if the body's energy stays within
-what it had plus what its energy budget holds of earlier losses; else its target is relaxed, and at last f itself is
-minimised.
+what it had plus what its energy budget holds of earlier losses; else it is solved on, at last f itself is minimised,
+and what moves beside the motion of the whole is slowed down (energy_budget.py).
 
 Shape matching brings tangled jellies back to their form, which springs and areas cannot find: the energy rises on the
 way. While a jelly is inverted or wound (jellies.py), each of its particles is joined by a spring of the jelly's own Cs
@@ -26,16 +26,22 @@ from sandbox.physics.geometry.rigid import (
 )
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.solvers.direct.energy_budget import (
     ENERGY_ROUNDING,
     FALLING,
     LAST_HALVINGS,
     MORE_SOLVES,
+    SETTLED,
+    SLOWING_ROUNDS,
     body_energy,
     budget_limit,
+    first_ratio,
+    keeps_lengths,
+    next_ratio,
     open_budget,
-    relaxation_ratio,
     reserve,
+    unreturnable,
 )
 from sandbox.physics.solvers.direct.network import (
     AHEAD,
@@ -51,15 +57,14 @@ from sandbox.physics.solvers.direct.network import (
 )
 from sandbox.physics.solvers.direct.rigid_turn import (
     begin_turn,
-    halve_within,
     hold_spin,
     kinetic_at_end,
+    slow_beside,
     spin_of_body,
 )
 from sandbox.physics.solvers.direct.system import (
     MINIMISED,
     PASSED,
-    RELAXED_TARGET,
     SLOWED_DOWN,
     SOLVED_ON,
     Rows,
@@ -69,7 +74,6 @@ from sandbox.physics.solvers.direct.system import (
     copy,
     hold_triangles,
     kinetic,
-    scale,
     span_of,
 )
 from sandbox.physics.solvers.inputs import Inputs
@@ -84,8 +88,6 @@ MISFIT_RATE = 0.36
 # Linear solves of a step at most. With 2, whipping ropes stretch up to 10 times as much and a hundredth of their steps
 # has to be minimised; a fourth is hardly ever asked for.
 LINEAR_SOLVES = 3
-# Halvings of what moves beside the motion of a body as a whole, before that is slowed down too.
-INNER_HALVINGS = 30
 # Relative error of the energy of a rigid motion, which has no more than was there.
 RIGID_ROUNDING = 1e-10
 # No turn fits where the fit of the best is below this share [1] of what it is to itself: in one point, or a square
@@ -124,7 +126,12 @@ def open_body(
     bodies, rows = system.bodies, system.rows
     underdamped, moved = load(span, system, state, inputs, not bodies.anchored[body], auto_substeps, h)
     bodies.underdamped[body] = underdamped
-    bodies.energy0[body] = kinetic(span, rows.mass, rows.v_star) + moved  # (13)
+    # What was found not to come back does not count, until something outside changes the body.
+    lowest = bodies.lowest[body]
+    kept = min(moved, state.unreturnable[lowest]) if state.energy_bank[lowest] != BANK_UNOPENED else 0.0
+    bodies.unreturnable0[body] = kept
+    bodies.unreturnable[body] = state.unreturnable[lowest] = 0.0
+    bodies.energy0[body] = kinetic(span, rows.mass, rows.v_star) + (moved - kept)  # (13)
     bodies.budget[body] = open_budget(body, span, system, state.energy_bank, moved, h)
     begin_turn(body, span, system, state, arc, h)
     bodies.inverted[body] = False
@@ -242,7 +249,7 @@ def _fit(g: int, rows: Rows, groups: ShapeMatchGroups) -> tuple[float, float, fl
 @inner_kernel
 def step_body(body: int, span: Span, system: System, state: State, h: float) -> int:
     """Bring a body that was opened to the end of a step of h [s], in `v`, and its budget; its way, see system.py."""
-    bodies, rows = system.bodies, system.rows
+    bodies = system.bodies
     energy0 = bodies.energy0[body]
     budget = bodies.budget[body]
     allowed = energy0 * (1.0 + ENERGY_ROUNDING) + budget  # (14)
@@ -251,18 +258,15 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
     after, _ = energies
     way = PASSED
     if not after <= allowed:
-        after, way = _relax(body, span, system, spin, energies, allowed, h)
+        after = _solve_on(body, span, system, spin, energies, allowed, h)
+        way = SOLVED_ON
     if not after <= allowed:
+        after = _minimise(body, span, system, spin, h)
         way = MINIMISED
-        copy(span, rows.v_star, rows.v_star_matched)
-        minimise(span, system, h)
-        hold_spin(span, rows, spin, bodies.pivot[body] >= 0, False, spin.momentum, h)
-        copy(span, rows.v, rows.v_best)
-        hold_triangles(span, system, h)
-        after = body_energy(body, span, system, h)
-        if not after <= allowed:
-            way = SLOWED_DOWN
-            after = _damp(body, span, system, spin, allowed, h)
+    if not after <= allowed:
+        after = _slow_down(body, span, system, spin, allowed, h)
+        way = SLOWED_DOWN
+    state.unreturnable[bodies.lowest[body]] = bodies.unreturnable[body]
     limit = budget_limit(body, system)
     saved = budget + energy0 - after  # (14)
     # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
@@ -337,82 +341,65 @@ def _take_candidate(body: int, span: Span, system: System, spin: RigidMotion, h:
 
 
 @inner_kernel
-def _relax(
+def _solve_on(
     body: int, span: Span, system: System, spin: RigidMotion, energies: tuple[float, float], allowed: float, h: float
-) -> tuple[float, int]:  # fmt: skip
-    # Solve on while each solve leaves less of what is too much, or for a target that is lower by just that: see
-    # energy_budget.py; the energy in the end, and the way. energies: of the last solve, and of the one before.
+) -> float:  # fmt: skip
+    # Solve on while that brings lengths nearer, or until what springs can give back is allowed; the energy in the end.
+    # energies: of the last solve, and of the one before.
     after, before = energies
-    way = SOLVED_ON
     for _solve in range(MORE_SOLVES):
-        if not after - allowed < FALLING * (before - allowed):
-            if not _relax_target(span, system.rows, spin, after - allowed):
+        if not after - allowed < FALLING * (before - allowed) and after < math.inf:
+            kept = unreturnable(body, span, system, False, h)
+            if after - kept <= allowed:
+                return after - kept
+            system.bodies.unreturnable[body] = 0.0
+            if abs(after - before) < SETTLED * (after - allowed):
                 break
-            after = math.inf
-            way = RELAXED_TARGET
         before = after
         after, _ = _take_candidate(body, span, system, spin, h)
         if after <= allowed:
             break
-    return after, way
+    return after
 
 
 @inner_kernel
-def _relax_target(span: Span, rows: Rows, spin: RigidMotion, excess: float) -> bool:
-    # Lower what a body aims at by what it has too much [J], or not. What stays is its motion as a whole, or rest where
-    # pins hold it.
+def _minimise(body: int, span: Span, system: System, spin: RigidMotion, h: float) -> float:
+    # Bring a body to the minimum of f, without its shape matching; its energy then.
+    rows = system.rows
+    copy(span, rows.v_star, rows.v_star_matched)
+    minimise(span, system, h)
+    hold_spin(span, rows, spin, system.bodies.pivot[body] >= 0, False, spin.momentum, h)
+    hold_triangles(span, system, h)
+    return body_energy(body, span, system, h) - unreturnable(body, span, system, False, h)
+
+
+@inner_kernel
+def _slow_down(body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float) -> float:
+    # Take off what moves beside the motion of the whole until the energy test holds, by as little as that asks for; its
+    # energy then. No length changes in that motion; and at rest it holds always.
+    rows = system.rows
+    copy(span, rows.v, rows.saved_delta_v)
+    after = body_energy(body, span, system, h) - unreturnable(body, span, system, False, h)
     moves = 0.0
     for r in range(span.first_row, span.last_row):
         u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
         u = rows.v[r, 0] - u
         v = rows.v[r, 1] - v
         moves += 0.5 * rows.mass[r] * (u * u + v * v)
-    ratio = relaxation_ratio(excess, moves)
-    if not ratio > 0.0:
-        return False
-    for r in range(span.first_row, span.last_row):
-        u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
-        rows.v_star_matched[r, 0] -= ratio * (rows.v_star_matched[r, 0] - u)
-        rows.v_star_matched[r, 1] -= ratio * (rows.v_star_matched[r, 1] - v)
-    return True
-
-
-@inner_kernel
-def _damp(body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float) -> float:
-    # Halve the free velocities, as they were found, until the energy test holds; at rest it always does. First only
-    # what moves beside the motion of the whole.
-    rows = system.rows
-    after = 0.0
-    if spin.inertia > 0.0:
-        copy(span, rows.v_best, rows.delta_v)
-        for _halving in range(INNER_HALVINGS):
-            halve_within(span, rows, spin, 0.5, h, rows.delta_v)
-            copy(span, rows.delta_v, rows.v)
-            hold_triangles(span, system, h)
-            after = body_energy(body, span, system, h)
-            if after <= allowed:
-                find_tension(span, system, h)
-                return after
-        # That motion itself: no length changes in it.
-        halve_within(span, rows, spin, 0.0, h, rows.v)
+    ratio = first_ratio(after - allowed, moves)
+    for done in range(SLOWING_ROUNDS + LAST_HALVINGS + 1):
+        if done < SLOWING_ROUNDS:
+            copy(span, rows.saved_delta_v, rows.v)
+            slow_beside(span, rows, spin, ratio, h)
+            ratio = next_ratio(ratio, done)
+        else:
+            ratio = 0.5 if done < SLOWING_ROUNDS + LAST_HALVINGS else 0.0
+            slow_beside(span, rows, RigidMotion(spin.x, spin.y, spin.u, spin.v, 0.0, 0.0), ratio, h)
         hold_triangles(span, system, h)
-        after = body_energy(body, span, system, h)
-        if after <= allowed * (1.0 + RIGID_ROUNDING):
-            find_tension(span, system, h)
-            return after
-    for _halving in range(LAST_HALVINGS):
-        # Not of what triangles have left: what was found leads downwards, once it is so short that none turns over.
-        scale(span, 0.5, rows.v_best)
-        copy(span, rows.v_best, rows.v)
-        hold_triangles(span, system, h)
-        after = body_energy(body, span, system, h)
-        if after <= allowed:
+        after = body_energy(body, span, system, h) - unreturnable(body, span, system, keeps_lengths(done), h)
+        # The motion of the whole alone has no more than was there.
+        if after <= allowed or (done == SLOWING_ROUNDS - 1 and after <= allowed * (1.0 + RIGID_ROUNDING)):
             break
-    if not after <= allowed:
-        for r in range(span.first_row, span.last_row):
-            rows.v[r, 0] = 0.0
-            rows.v[r, 1] = 0.0
-        after = body_energy(body, span, system, h)
     find_tension(span, system, h)
     return after
 

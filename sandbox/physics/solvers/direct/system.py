@@ -15,15 +15,13 @@ from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, ClampedTriangle
 
 # Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
 # angular momentum [kg m^2/s] about it; whether its angle, not the sine of that, follows from those; the rates [1/s] at
-# which chords lead inwards where the step begins, and where it ends; inertia and place there. STAR_MOMENTUM: angular
-# momentum of v*, where the target of the body is relaxed (energy_budget.py).
+# which chords lead inwards where the step begins, and where it ends; inertia and place there.
 SPIN_X, SPIN_Y, SPIN_VX, SPIN_VY, INERTIA, MOMENTUM, BY_ARC, INWARD, END_INWARD, END_INERTIA, END_X, END_Y = range(12)
-STAR_MOMENTUM, SPIN_NUMBERS = 12, 13
+SPIN_NUMBERS = 12
 # The ways through the test. The last one that a substep of a body alone or of an island needed is counted, which no
-# tick reads. The first linear solve passed; one more did; one for a lower target did; one whose contacts only hold, or
-# the minimum of f; velocities were reduced until they passed. Counted beside them: bodies that answered to contacts by
-# the masses of their particles, see islands.py.
-PASSED, SOLVED_ON, RELAXED_TARGET, MINIMISED, SLOWED_DOWN, BY_MASS, WAYS = range(7)
+# tick reads. The first linear solve passed; one more did; the minimum of f did; what moves within was slowed down until
+# it passed. Counted beside them: bodies that answered to contacts by the masses of their particles, see islands.py.
+PASSED, SOLVED_ON, MINIMISED, SLOWED_DOWN, BY_MASS, WAYS = range(6)
 
 
 class Bodies(NamedTuple):
@@ -41,6 +39,8 @@ class Bodies(NamedTuple):
     matched: Annotated[Flags, "bodies"]
     energy0: Annotated[Floats, "bodies"]  # [J]: once forces, pins and drives have moved
     budget: Annotated[Floats, "bodies"]  # [J]: what its energy budget has
+    unreturnable0: Annotated[Floats, "bodies"]  # [J]: what its springs count at the start and cannot give back
+    unreturnable: Annotated[Floats, "bodies"]  # [J]: likewise, at the end
     spared: Annotated[Floats, "bodies"]  # [kg m^2/s]: see rigid_turn.py
     spin: Annotated[FloatRows, f"bodies, {SPIN_NUMBERS}"]  # likewise
 
