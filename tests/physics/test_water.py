@@ -10,7 +10,7 @@ from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.water.displacers import FX, FY
-from sandbox.physics.water.push import arc_cosine, disc_area_below, disc_depth, mean_depth, wet_shares
+from sandbox.physics.water.shapes import arc_cosine, disc_area_below, disc_depth, wet_shares
 from tests.support.pools import (
     CALM,
     DENSITY,
@@ -39,6 +39,11 @@ def disc(share, y=0.0, radius=0.3, **more):
 
 
 # ---- closed forms
+
+
+def mean_depth(*depths):
+    """Integral of the depth over what is wet of a triangle, over its area."""
+    return sum(depth * share for depth, share in zip(depths, wet_shares(*depths), strict=True))
 
 
 def test_wet_parts_are_what_small_steps_add_up_to():
