@@ -6,16 +6,18 @@ go takes another. At the velocities after the springs, and places that belong to
     h F (v + v') / 2 + U(x + h v' / 2) - U(x - h v / 2)
 
 too much. Where that is above 0, as much energy is taken: first of what moves beside the motion as a whole, of what is
-held of all, and then of how it rises.
+held of all, and then of how it rises. Drag that acts on a velocity which lift has turned round would give energy, too, and counts as lift.
 """
+
+import math
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.settings import GRAVITY_Y
 from sandbox.physics.state import State
 from sandbox.physics.water.displacers import (
-    DX,
-    DY,
+    ALLOWED,
+    BY_CONTACTS,
     EXCESS,
     FY,
     HELD,
@@ -26,14 +28,24 @@ from sandbox.physics.water.displacers import (
     PART,
     PX,
     PY,
+    RISE,
+    RXX,
+    RXY,
+    RYY,
     SWING,
+    TOOK_X,
     UNDER,
+    UNDONE,
+    U,
+    V,
     Water,
 )
 from sandbox.physics.water.lift import AFTER, BEFORE, add_energies
 
-# Halvings of the range in which what remains of the motion is looked for, and what is rounding of its energy [1].
-HALVINGS = 16
+# Halvings of the range in which what remains of a motion is looked for, how far from there its energy is looked at, too,
+# and what is rounding of that [1].
+HALVINGS = 24
+NEXT = 1e-6
 ROUNDING = 1e-9
 # All of the motion, and none of what moves beside the motion as a whole.
 WHOLE, AS_ONE = 2.0, 1.0
@@ -52,9 +64,12 @@ def bound_lift(
             ahead = 0.0 if water.is_joined[p] else early
             for axis in range(2):
                 water.before[p, axis] = state.position[p, axis] - (0.5 * h - ahead) * start[p, axis]
-                load[p, DX + axis] = state.velocity[p, axis]
+                load[p, U + axis] = state.velocity[p, axis]
                 body[label[p], PX + axis] += state.mass[p] * state.velocity[p, axis]
-            body[label[p], EXCESS] += 0.5 * h * load[p, FY] * (start[p, 1] + state.velocity[p, 1])
+            u, v = state.velocity[p, 0], state.velocity[p, 1]
+            fx, fy = load[p, RXX] * u + load[p, RXY] * v, load[p, RXY] * u + load[p, RYY] * v
+            body[label[p], EXCESS] += 0.5 * h * load[p, FY] * (start[p, 1] + v)
+            body[label[p], TOOK_X] -= 0.5 * h * (fx * (start[p, 0] + u) + fy * (start[p, 1] + v))
     _sum_under(water, state, label, g, BEFORE)
     for p in range(label.shape[0]):
         body[p, EXCESS] -= body[p, UNDER]
@@ -62,28 +77,74 @@ def bound_lift(
     found = False
     for p in range(label.shape[0]):
         if label[p] == p and water.due[p]:
-            body[p, EXCESS] += body[p, UNDER]
-            water.due[p] = body[p, EXCESS] > max(body[p, SWING], ROUNDING) * body[p, MOVES]
+            body[p, EXCESS] += body[p, UNDER] + max(0.0, body[p, TOOK_X])
+            total = body[p, MOVES] + body[p, UNDER]
+            rounding = ROUNDING * (abs(body[p, MOVES]) + ROUNDING * abs(body[p, UNDER]))
+            water.due[p] = body[p, EXCESS] > rounding + body[p, SWING] * abs(body[p, MOVES])
             found = found or water.due[p]
-            # What may be left of all.
-            body[p, EXCESS] = body[p, MOVES] + body[p, UNDER] - body[p, EXCESS]
-            body[p, LOW], body[p, HIGH] = 0.0, WHOLE
-    if not found:
-        return
-    for p in range(label.shape[0]):
-        water.due[p] = water.due[label[p]] and state.inverse_mass[p] > 0.0 and state.particle_active[p]
-    for halving in range(HALVINGS):
+            body[p, ALLOWED] = total - body[p, EXCESS]
+    if found:
         for p in range(label.shape[0]):
-            # At the end what is known to be little enough.
-            body[p, PART] = 0.5 * (body[p, LOW] + body[p, HIGH]) if halving < HALVINGS - 1 else body[p, LOW]
-        _slow(water, state, label)
-        if halving < HALVINGS - 1:
-            _measure(water, state, start, label, g, early, h)
-            for p in range(label.shape[0]):
-                if body[p, MOVES] + body[p, UNDER] <= body[p, EXCESS]:
-                    body[p, LOW] = body[p, PART]
-                else:
-                    body[p, HIGH] = body[p, PART]
+            water.due[p] = water.due[label[p]] and state.inverse_mass[p] > 0.0 and state.particle_active[p]
+        _slow(water, state, start, label, g, early, h)
+
+
+@inner_kernel
+def _slow(
+    water: Water, state: State, start: FloatRows, label: Slots, g: float, early: float, h: float
+) -> None:  # fmt: skip
+    # Of the motions of each body that is due, from all of it down to the rise with the least energy, the first one that
+    # has no more than is allowed, or that with the least: by halving, with a look at where it falls.
+    body = water.body
+    for p in range(label.shape[0]):
+        # No faster than all that is allowed would make it, and no slower than what falls from rest.
+        most = math.sqrt(2.0 * max(0.0, body[p, ALLOWED]) / body[p, MASS]) if body[p, MASS] > 0.0 else 0.0
+        body[p, RISE], body[p, PART] = most + h * g, AS_ONE
+        body[p, LOW], body[p, HIGH] = AS_ONE if body[p, HELD] > BY_CONTACTS else 0.0, WHOLE
+    _measure_part(water, state, start, label, g, early, h)
+    for p in range(label.shape[0]):
+        body[p, UNDONE], body[p, PART] = body[p, MOVES] + body[p, UNDER], AS_ONE - NEXT
+    _measure_part(water, state, start, label, g, early, h)
+    for p in range(label.shape[0]):
+        if body[p, MOVES] + body[p, UNDER] >= body[p, UNDONE]:
+            body[p, RISE] = -h * g
+    for _ in range(HALVINGS):
+        for p in range(label.shape[0]):
+            body[p, PART] = 0.5 * (body[p, LOW] + body[p, HIGH])
+        _measure_part(water, state, start, label, g, early, h)
+        for p in range(label.shape[0]):
+            body[p, UNDONE] = body[p, MOVES] + body[p, UNDER]
+            body[p, PART] -= NEXT
+        _measure_part(water, state, start, label, g, early, h)
+        for p in range(label.shape[0]):
+            rises = body[p, MOVES] + body[p, UNDER] < body[p, UNDONE]
+            if body[p, UNDONE] > body[p, ALLOWED] and rises:
+                body[p, HIGH] = body[p, PART] + NEXT
+            else:
+                body[p, LOW] = body[p, PART] + NEXT
+    for p in range(label.shape[0]):
+        body[p, PART] = body[p, LOW]
+    _measure_part(water, state, start, label, g, early, h)
+
+
+@inner_kernel
+def _measure_part(
+    water: Water, state: State, start: FloatRows, label: Slots, g: float, early: float, h: float
+) -> None:  # fmt: skip
+    # Leave PART of the motion of what is due, and measure that: from 2 to 1 less of what moves beside its motion as a
+    # whole, of what is held of all, and from there on another rise.
+    body, load = water.body, water.load
+    for p in range(label.shape[0]):
+        if not water.due[p]:
+            continue
+        part, m = body[label[p], PART], body[label[p], MASS]
+        u, v = body[label[p], PX] / m, body[label[p], PY] / m
+        if body[label[p], HELD] > BY_CONTACTS:
+            u, v = 0.0, 0.0
+        beside, other = max(0.0, part - AS_ONE), max(0.0, AS_ONE - part)
+        state.velocity[p, 0] = u + beside * (load[p, U] - u)
+        state.velocity[p, 1] = v + beside * (load[p, V] - v) + other * (body[label[p], RISE] - v)
+    _measure(water, state, start, label, g, early, h)
 
 
 @inner_kernel
@@ -92,7 +153,7 @@ def _find_wet(water: Water, state: State, label: Slots) -> bool:
     body, found = water.body, False
     for p in range(label.shape[0]):
         body[p, UNDER] = 0.0
-        body[p, PX] = body[p, PY] = body[p, EXCESS] = 0.0
+        body[p, PX] = body[p, PY] = body[p, EXCESS] = body[p, TOOK_X] = 0.0
     for p in range(label.shape[0]):
         if water.wet[p] and water.load[p, FY] != 0.0:
             body[label[p], UNDER] = 1.0
@@ -128,18 +189,3 @@ def _sum_under(water: Water, state: State, label: Slots, g: float, column: int) 
     add_energies(water, state, g, column, 1.0)
     for p in range(label.shape[0]):
         water.body[label[p], UNDER] += water.lifted[p]
-
-
-@inner_kernel
-def _slow(water: Water, state: State, label: Slots) -> None:
-    # Leave PART of the motion of what is due: up to 1 of its rise, and from there on of what moves beside that.
-    body, load = water.body, water.load
-    for p in range(label.shape[0]):
-        if not water.due[p]:
-            continue
-        part, m = body[label[p], PART], body[label[p], MASS]
-        is_free = 0.0 if body[label[p], HELD] > 0.0 else 1.0
-        u, v = is_free * body[label[p], PX] / m, is_free * body[label[p], PY] / m
-        beside = max(0.0, part - AS_ONE)
-        state.velocity[p, 0] = u + beside * (load[p, DX] - u)
-        state.velocity[p, 1] = min(part, AS_ONE) * v + beside * (load[p, DY] - v)

@@ -36,17 +36,21 @@ LEFT, BOTTOM, RIGHT, TOP, DENSITY, FAST, SLOW, FLOW_X, FLOW_Y, POOL_NUMBERS = ra
 HULL, SPRING, TURNED, HULL_NUMBERS = range(4)
 NO_POOLS: FloatRows = np.zeros((0, POOL_NUMBERS))
 NO_HULLS: SlotRows = np.zeros((0, HULL_NUMBERS), np.int64)
-# Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2); its mass
-# and inverse mass as they are outside of a step, and its velocity as the step begins [m/s] (2).
-FX, FY, RXX, RXY, RYY, DX, DY, OWN_MASS, OWN_INVERSE, LOADS = range(10)
+# Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2); its own
+# mass and inverse mass where water comes along in a step; its velocity [m/s] (2) after the springs.
+FX, FY, RXX, RXY, RYY, DX, DY, OWN_MASS, OWN_INVERSE, U, V, LOADS = range(12)
 # Columns of `body`, at the label of a body: mass [kg], momentum [kg m/s] (2), force and weight [N] (2); resistance
 # [kg/s] xx, xy, yy; about its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; the
 # drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); whether a pin, a hand or a
-# contact holds it. And what follows: the change of its velocity [m/s] (2); how forces as they are where nothing changes
-# raise it [m/s] and turn it [rad/s] in a step; which part of that its way is looked at with, and the largest known to be
-# too little, the smallest to be too much, with what each is off by.
+# contact holds it. What drag changes of its velocity [m/s] (2), and that lift alone does, and its turn [rad/s]. How
+# forces raise it [m/s] and turn it [rad/s] in a step where it would go on as it does; the part of that with which its way
+# is looked at, the largest known to be too little, the smallest to be too much, what each is off by; (omega h / 2)^2 of a
+# swing. After the springs: the energy [J] that lift has given too much, that of its motion, and U.
 MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
-HELD, CX, CY, RISE, TURN, PART, LOW, LOW_MISS, HIGH, HIGH_MISS, SWING, EXCESS, MOVES, UNDER, SUMS = range(16, 31)
+HELD, CX, CY, LIFT, LIFT_TURN, SHARE, RISE, TURN, PART, LOW, LOW_MISS, HIGH, HIGH_MISS, SWING = range(16, 30)
+EXCESS, MOVES, UNDER, ALLOWED, UNDONE, SUMS = range(30, 36)
+# What holds a body.
+BY_CONTACTS, BY_PINS = 1.0, 2.0
 
 
 class Pool(NamedTuple):
@@ -92,8 +96,8 @@ class Water(NamedTuple):
 
 
 class WaterScratch(NamedTuple):
-    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge; by owner (see _key): whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it
-    is of a whole hull."""
+    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge; by owner (see _key):
+    whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it is of a whole hull."""
 
     lost: Annotated[Floats, "particles"]
     in_triangle: Annotated[Flags, "particles"]

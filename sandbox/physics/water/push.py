@@ -26,6 +26,8 @@ from sandbox.physics.water.displacers import (
     BOTTOM,
     BXX,
     BXY,
+    BY_CONTACTS,
+    BY_PINS,
     BYY,
     CX,
     CY,
@@ -43,6 +45,8 @@ from sandbox.physics.water.displacers import (
     HIGH,
     HIGH_MISS,
     LEFT,
+    LIFT,
+    LIFT_TURN,
     LOADS,
     LOW,
     LOW_MISS,
@@ -62,6 +66,7 @@ from sandbox.physics.water.displacers import (
     RXX,
     RXY,
     RYY,
+    SHARE,
     SLOW,
     SWING,
     TOOK_X,
@@ -82,6 +87,9 @@ NEAR = 1e-6
 WIDEST_SWING = 0.25
 STRAIGHT = 1e-3
 SLOWEST = 1e-7
+# Parts of a body that lift makes faster than this beside each other [m/s] in a step are soft in water that is hundreds of
+# times denser: their springs cannot hold them.
+HARDEST_LIFT = 15.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
 
@@ -102,6 +110,7 @@ def push_by_water(
     _find_held(water, state, label, kept, count)
     _load_drag(water, state, start, early)
     _load_lift(water, state, start, label, numbers, g, early, h)
+    _lift_bodies(water, state, label, h)
     _push(water, state, start, label, weighs_springs, h)
     _slow_bodies(water, state, label, h)
 
@@ -290,8 +299,50 @@ def _look_again(water: Water, p: int, is_first: bool, h: float) -> bool:
 
 
 @inner_kernel
+def _lift_bodies(water: Water, state: State, label: Slots, h: float) -> None:
+    # v += h F / m. Where a body would be torn by that it moves as one, but for HARDEST_LIFT.
+    body, load = water.body, water.load
+    for g in range(body.shape[0]):
+        body[g, LIFT], body[g, LIFT_TURN], body[g, SHARE] = 0.0, 0.0, 1.0
+    for p in range(label.shape[0]):
+        g = label[p]
+        if load[p, FY] != 0.0 and body[g, MASS] > 0.0:
+            arm = state.position[p, 0] - state.position[g, 0] - body[g, MX] / body[g, MASS]
+            body[g, LIFT] += h * load[p, FY] / body[g, MASS]
+            body[g, LIFT_TURN] += h * load[p, FY] * arm
+    for p in range(label.shape[0]):
+        g = label[p]
+        if not state.inverse_mass[p] > 0.0 or not body[g, MASS] > 0.0:
+            continue
+        x, y = _swept(water, state, label, p)
+        x, y = 0.0 - x, h * load[p, FY] / state.mass[p] - y
+        hard = math.sqrt(x * x + y * y)
+        if hard > HARDEST_LIFT:
+            body[g, SHARE] = min(body[g, SHARE], HARDEST_LIFT / hard)
+    for p in range(label.shape[0]):
+        g = label[p]
+        if not state.inverse_mass[p] > 0.0 or not state.particle_active[p] or not body[g, MASS] > 0.0:
+            continue
+        x, y = _swept(water, state, label, p)
+        state.velocity[p, 0] += (1.0 - body[g, SHARE]) * x
+        state.velocity[p, 1] += body[g, SHARE] * h * load[p, FY] / state.mass[p] + (1.0 - body[g, SHARE]) * y
+
+
+@inner_kernel
+def _swept(water: Water, state: State, label: Slots, p: int) -> tuple[float, float]:
+    # What lift changes a particle's velocity by where its body moves as one.
+    body, g = water.body, label[p]
+    m = body[g, MASS]
+    inertia = body[g, MRR] - (body[g, MX] * body[g, MX] + body[g, MY] * body[g, MY]) / m
+    turn = body[g, LIFT_TURN] / inertia if inertia > LEAST_INERTIA * body[g, MRR] else 0.0
+    x = state.position[p, 0] - state.position[g, 0] - body[g, MX] / m
+    y = state.position[p, 1] - state.position[g, 1] - body[g, MY] / m
+    return -turn * y, body[g, LIFT] + turn * x
+
+
+@inner_kernel
 def _push(water: Water, state: State, start: FloatRows, label: Slots, weighs_springs: bool, h: float) -> None:
-    # What nothing holds: v += -(m + h D)^-1 h D (start - flow) + h F / m
+    # What nothing holds: v += -(m + h D)^-1 h D (start - flow)
     load, body, velocity, mass = water.load, water.body, state.velocity, state.mass
     for p in range(load.shape[0]):
         if not water.wet[p] or not state.inverse_mass[p] > 0.0:
@@ -305,8 +356,8 @@ def _push(water: Water, state: State, start: FloatRows, label: Slots, weighs_spr
         xx, xy, yy = mass[p] + h * load[p, RXX], h * load[p, RXY], mass[p] + h * load[p, RYY]
         per = h / (xx * yy - xy * xy)
         dx, dy = per * (yy * rx - xy * ry), per * (xx * ry - xy * rx)
-        velocity[p, 0] += dx + h * load[p, FX] / mass[p]
-        velocity[p, 1] += dy + h * load[p, FY] / mass[p]
+        velocity[p, 0] += dx
+        velocity[p, 1] += dy
         # The same of the motion of the body as a whole. That of its parts beside each other is theirs alone.
         u, v = body[g, PX] / body[g, MASS], body[g, PY] / body[g, MASS]
         body[g, DRAG_X] += load[p, DX] - load[p, RXX] * u - load[p, RXY] * v
@@ -324,8 +375,8 @@ def _come_along(
     half, across = 0.5 * (load[p, RXX] - load[p, RYY]), load[p, RXY]
     d = 0.5 * (load[p, RXX] + load[p, RYY]) + math.sqrt(half * half + across * across)
     mass = m + h * d
-    velocity[p, 0] = start[p, 0] + (m * (velocity[p, 0] - start[p, 0]) + h * (load[p, FX] + rx)) / mass
-    velocity[p, 1] = start[p, 1] + (m * (velocity[p, 1] - start[p, 1]) + h * (load[p, FY] + ry)) / mass
+    velocity[p, 0] = start[p, 0] + (m * (velocity[p, 0] - start[p, 0]) + h * rx) / mass
+    velocity[p, 1] = start[p, 1] + (m * (velocity[p, 1] - start[p, 1]) + h * ry) / mass
     load[p, OWN_MASS], load[p, OWN_INVERSE] = m, state.inverse_mass[p]
     state.mass[p] = mass
     if not (weighs_springs and water.is_joined[p]):
@@ -333,31 +384,27 @@ def _come_along(
 
 
 @inner_kernel
-def _hold(water: Water, label: Slots, p: int) -> None:
-    water.body[label[p], HELD] = 1.0
-
-
-@inner_kernel
 def _find_held(water: Water, state: State, label: Slots, kept: KeptContacts, count: int) -> None:
     # What pins, hands or the contacts of the last step hold.
-    for p in range(water.body.shape[0]):
-        water.body[p, HELD] = 0.0
-    for s in range(state.spring_active.shape[0]):
-        if state.spring_active[s]:
-            a, b = state.particle_a[s], state.particle_b[s]
-            if not state.inverse_mass[a] > 0.0:
-                _hold(water, label, b)
-            if not state.inverse_mass[b] > 0.0:
-                _hold(water, label, a)
+    body = water.body
+    for p in range(body.shape[0]):
+        body[p, HELD] = 0.0
     for c in range(count):
         if not (kept.impulse[c, 0] > 0.0 or kept.impact[c] > 0.0):
             continue
         number, kind = kept.feature[c] // KINDS, kept.feature[c] % KINDS
-        _hold(water, label, kept.particle[c])
+        body[label[kept.particle[c]], HELD] = BY_CONTACTS
         if kind == DISC:
-            _hold(water, label, number)
+            body[label[number], HELD] = BY_CONTACTS
         elif kind != TERRAIN:
-            _hold(water, label, state.particle_a[number % TIP_SHIFT])
+            body[label[state.particle_a[number % TIP_SHIFT]], HELD] = BY_CONTACTS
+    for s in range(state.spring_active.shape[0]):
+        if state.spring_active[s]:
+            a, b = state.particle_a[s], state.particle_b[s]
+            if not state.inverse_mass[a] > 0.0:
+                body[label[b], HELD] = BY_PINS
+            if not state.inverse_mass[b] > 0.0:
+                body[label[a], HELD] = BY_PINS
 
 
 @inner_kernel
