@@ -114,8 +114,9 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
             clamp(state, collisions, h)
         if world.triangles.of_world.constraint.shape[0] > 0:
             clamp_world(world.triangles, solver == DIRECT, h)
-        give_mass_back(world.water, state)
-        bound_lift(world.water, state, start, world.body_label, world.numbers, early, h)
+        if world.water.pool.shape[0] > 0:
+            give_mass_back(world.water, state)
+            bound_lift(world.water, state, start, world.body_label, world.numbers, early, h)
         integrate_positions(state, h)
         if solver == DIRECT:
             end_turns(world.system, state, h)

@@ -454,4 +454,3 @@ def _slow_bodies(water: Water, state: State, label: Slots, h: float) -> None:
         if state.particle_active[p] and state.inverse_mass[p] > 0.0:
             state.velocity[p, 0] += body[label[p], CX]
             state.velocity[p, 1] += body[label[p], CY]
-
