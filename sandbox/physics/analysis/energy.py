@@ -24,7 +24,7 @@ from sandbox.physics.solvers.direct.system import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
 from sandbox.physics.water.displacers import FLOW_X, FLOW_Y, Water, lay_out_water
-from sandbox.physics.water.lift import BEFORE, add_energies
+from sandbox.physics.water.lift import ABOVE_ALL, add_energies
 from sandbox.physics.world import World
 
 AnyState = TypeVar("AnyState", World, Snapshot, World | Snapshot)
@@ -238,7 +238,8 @@ def _energy_lifted(pointer: Bundle[WaterPlace], g: float) -> float:
         water.lifted[p], water.due[p] = 0.0, True
         for axis in range(2):
             water.before[p, axis] = water.after[p, axis] = place.state.position[p, axis]
-    add_energies(water, place.state, g, BEFORE, 1.0)
+        water.before[p, 1] = ABOVE_ALL
+    add_energies(water, place.state, g)
     for p in range(water.lifted.shape[0]):
         total += water.lifted[p]
     return total

@@ -32,14 +32,17 @@ from sandbox.physics.water.displacers import (
     SWING,
     TOOK_X,
     UNDER,
+    WORK,
     U,
     V,
     Water,
 )
-from sandbox.physics.water.lift import AFTER, BEFORE, add_energies
+from sandbox.physics.water.lift import add_energies
 
-# Halvings of the range in which the velocities are looked for, and what is rounding of their energy [1].
+# Halvings of the range in which the velocities are looked for; the part of its work that lift may give too much, as it
+# takes as much elsewhere; and what is rounding of energy [1].
 HALVINGS = 24
+SPARED = 5e-4
 ROUNDING = 1e-9
 
 
@@ -59,7 +62,9 @@ def bound_lift(
         if water.due[p]:
             k, u, v = label[p], velocity[p, 0], velocity[p, 1]
             fx, fy = load[p, RXX] * u + load[p, RXY] * v, load[p, RXY] * u + load[p, RYY] * v
-            body[k, EXCESS] += 0.5 * h * load[p, FY] * (start[p, 1] + v)
+            work = 0.5 * h * load[p, FY] * (start[p, 1] + v)
+            body[k, EXCESS] += work
+            body[k, WORK] += abs(work)
             # Drag of a velocity that lift has turned round would give energy, too.
             body[k, TOOK_X] -= 0.5 * h * (fx * (start[p, 0] + u) + fy * (start[p, 1] + v))
             body[k, RISE] += state.mass[p] * (start[p, 1] + v)
@@ -67,17 +72,13 @@ def bound_lift(
             squared = start[p, 0] * start[p, 0] + start[p, 1] * start[p, 1]
             weight = g * state.gravity_scale[p]
             body[k, ALLOWED] += state.mass[p] * (0.5 * squared - weight * 0.5 * h * start[p, 1])
-    _sum_under(water, state, label, g, BEFORE)
-    for p in range(label.shape[0]):
-        body[p, EXCESS] -= body[p, UNDER]
-        body[p, ALLOWED] += body[p, UNDER]
     _measure(water, state, start, label, g, early, h)
     found = False
     for p in range(label.shape[0]):
         if label[p] == p and water.due[p]:
             body[p, EXCESS] += body[p, UNDER] + max(0.0, body[p, TOOK_X])
-            rounding = ROUNDING * (abs(body[p, MOVES]) + ROUNDING * abs(body[p, UNDER]))
-            water.due[p] = body[p, EXCESS] > rounding + body[p, SWING] * abs(body[p, MOVES])
+            spared = SPARED * body[p, WORK] + max(ROUNDING, body[p, SWING]) * abs(body[p, MOVES])
+            water.due[p] = body[p, EXCESS] > spared
             found = found or water.due[p]
             # What all else has given.
             body[p, EXCESS] = body[p, MOVES] + body[p, UNDER] - body[p, EXCESS] - body[p, ALLOWED]
@@ -92,7 +93,7 @@ def _find_wet(water: Water, state: State, label: Slots) -> bool:
     # Bodies that are lifted are due, with nothing summed up of them; whether there are any.
     body, found = water.body, False
     for p in range(label.shape[0]):
-        body[p, UNDER] = body[p, EXCESS] = body[p, TOOK_X] = body[p, RISE] = body[p, ALLOWED] = 0.0
+        body[p, UNDER] = body[p, EXCESS] = body[p, TOOK_X] = body[p, WORK] = body[p, RISE] = body[p, ALLOWED] = 0.0
     for p in range(label.shape[0]):
         if water.wet[p] and water.load[p, FY] != 0.0:
             body[label[p], UNDER] = 1.0
@@ -138,7 +139,7 @@ def _turn_back(
 def _measure(
     water: Water, state: State, start: FloatRows, label: Slots, g: float, early: float, h: float
 ) -> None:  # fmt: skip
-    # Of bodies that are due, after their way: kinetic energy and that of weights in MOVES, U in UNDER [J].
+    # Of bodies that are due, after their way: kinetic energy and that of weights in MOVES, what U has gained in UNDER [J].
     body, velocity = water.body, state.velocity
     for p in range(label.shape[0]):
         body[p, MOVES] = 0.0
@@ -150,13 +151,8 @@ def _measure(
             squared = velocity[p, 0] * velocity[p, 0] + velocity[p, 1] * velocity[p, 1]
             weight = g * state.gravity_scale[p]
             body[label[p], MOVES] += state.mass[p] * (0.5 * squared + weight * 0.5 * h * velocity[p, 1])
-    _sum_under(water, state, label, g, AFTER)
-
-
-@inner_kernel
-def _sum_under(water: Water, state: State, label: Slots, g: float, column: int) -> None:
     for p in range(label.shape[0]):
-        water.lifted[p] = water.body[p, UNDER] = 0.0
-    add_energies(water, state, g, column, 1.0)
+        water.lifted[p] = body[p, UNDER] = 0.0
+    add_energies(water, state, g)
     for p in range(label.shape[0]):
-        water.body[label[p], UNDER] += water.lifted[p]
+        body[label[p], UNDER] += water.lifted[p]

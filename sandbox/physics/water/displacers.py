@@ -48,7 +48,7 @@ FX, FY, RXX, RXY, RYY, DX, DY, OWN_MASS, OWN_INVERSE, U, V, LOADS = range(12)
 # swing. After the springs: the energy [J] that lift has given too much, that of its motion, and U.
 MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
 HELD, CX, CY, LIFT, LIFT_TURN, SHARE, RISE, TURN, PART, LOW, LOW_MISS, HIGH, HIGH_MISS, SWING = range(16, 30)
-EXCESS, MOVES, UNDER, ALLOWED, SUMS = range(30, 35)
+EXCESS, MOVES, UNDER, ALLOWED, WORK, SUMS = range(30, 36)
 # What holds a body.
 BY_CONTACTS, BY_PINS = 1.0, 2.0
 

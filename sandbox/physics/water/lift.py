@@ -35,6 +35,8 @@ PLACES = 4
 SHORT_WAY = 1e-6
 # Columns of a corner [m]: where it is across, and how high at the start of its way and at the end.
 ACROSS, BEFORE, AFTER = range(3)
+# A height [m] that no water has.
+ABOVE_ALL = 1e300
 
 
 @inner_kernel
@@ -142,10 +144,13 @@ def _is_beside(water: Water, k: int) -> bool:
 @inner_kernel
 def _mean_shares(water: Water, k: int) -> tuple[float, float, float]:
     # Of the corners, a triangle: the mean over their way of each one's share of what is in a pool, over the area.
-    if _is_beside(water, k):
+    at = water.corner
+    lowest = min(at[0, BEFORE], at[0, AFTER], at[1, BEFORE], at[1, AFTER])
+    lowest = min(lowest, at[2, BEFORE], at[2, AFTER])
+    if lowest >= water.pool[k, TOP] or _is_beside(water, k):
         return 0.0, 0.0, 0.0
     x, y, z = _mean_below(water, k, water.pool[k, TOP])
-    if x != 0.0 or y != 0.0 or z != 0.0:
+    if lowest < water.pool[k, BOTTOM]:
         e, f, g = _mean_below(water, k, water.pool[k, BOTTOM])
         x, y, z = x - e, y - f, z - g
     return x, y, z
@@ -193,17 +198,6 @@ def _depth_below(water: Water, k: int, a: float, b: float, c: float) -> float:
 
 
 @inner_kernel
-def _depth_of_corners(water: Water, k: int, column: int) -> float:
-    # Integral of what a pool's depth is to its floor, and below that of all of it, over the area.
-    if _is_beside(water, k):
-        return 0.0
-    at, top, bottom = water.corner, water.pool[k, TOP], water.pool[k, BOTTOM]
-    return _depth_below(water, k, top - at[0, column], top - at[1, column], top - at[2, column]) - _depth_below(
-        water, k, bottom - at[0, column], bottom - at[1, column], bottom - at[2, column]
-    )
-
-
-@inner_kernel
 def radius_of(water: Water, i: int, state: State) -> float:
     """Radius [m] of the disc that displaces water."""
     area = water.disc_area[i]
@@ -223,49 +217,76 @@ def _mean_area(water: Water, k: int, i: int, state: State) -> float:
     # Mean over its way of the area of a disc that is in a pool.
     p, radius = water.disc[i], radius_of(water, i, state)
     low, high = water.before[p, 1], water.after[p, 1]
-    within = disc_within(water, k, 0.5 * (water.before[p, 0] + water.after[p, 0]), radius)
-    if within == 0.0 or min(low, high) >= water.pool[k, TOP] + radius:
-        return 0.0
     top, bottom = water.pool[k, TOP], water.pool[k, BOTTOM]
-    return within * (
-        mean_disc_area(top - low, top - high, radius) - mean_disc_area(bottom - low, bottom - high, radius)
-    )
+    if min(low, high) >= top + radius:
+        return 0.0
+    within = disc_within(water, k, 0.5 * (water.before[p, 0] + water.after[p, 0]), radius)
+    if not within > 0.0:
+        return 0.0
+    area = mean_disc_area(top - low, top - high, radius)
+    if min(low, high) < bottom + radius:
+        area -= mean_disc_area(bottom - low, bottom - high, radius)
+    return within * area
 
 
 @inner_kernel
-def add_energies(water: Water, state: State, g: float, column: int, sign: float) -> None:
-    """Add U [J] of all that is due, BEFORE its way or AFTER it, times a sign, to `lifted` at a particle of each."""
-    place = water.before if column == BEFORE else water.after
+def add_energies(water: Water, state: State, g: float) -> None:
+    """Add what U [J] of all that is due gains on the way from `before` to `after` to `lifted` at a particle of each."""
     for k in range(water.pool.shape[0]):
-        weight = sign * water.pool[k, DENSITY] * g
+        weight = water.pool[k, DENSITY] * g
         for i in range(water.triangle.shape[0]):
             p = _free_of(state, water.triangle[i, 0], water.triangle[i, 1], water.triangle[i, 2])
             if water.due[p]:
                 for corner in range(3):
                     _set_corner(water, corner, water.triangle[i, corner])
                 area = abs(state.constraint_rest[water.constraint[i], 0])
-                water.lifted[p] += weight * area * _depth_of_corners(water, k, column)
+                water.lifted[p] += weight * area * _gain_of_corners(water, k)
         for o in range(water.shell_start.shape[0] - 1):
             first = water.shell_start[o]
             p = _free_of(state, water.shell_a[first], water.shell_b[first], water.shell_a[first])
             if not water.due[p]:
                 continue
             _set_middle(water, o)
+            area = area_of(water, o, state)
             for e in range(first, water.shell_start[o + 1]):
                 _set_corner(water, 1, water.shell_a[e])
                 _set_corner(water, 2, water.shell_b[e])
-                part = water.shell_share[e] * area_of(water, o, state)
-                water.lifted[p] += weight * part * _depth_of_corners(water, k, column)
+                water.lifted[p] += weight * area * water.shell_share[e] * _gain_of_corners(water, k)
         for i in range(water.disc.shape[0]):
             p = water.disc[i]
-            if not water.due[p]:
-                continue
-            radius = radius_of(water, i, state)
-            within = disc_within(water, k, 0.5 * (water.before[p, 0] + water.after[p, 0]), radius)
-            if within > 0.0:
-                depth = disc_depth(water.pool[k, TOP] - place[p, 1], radius)
-                depth -= disc_depth(water.pool[k, BOTTOM] - place[p, 1], radius)
-                water.lifted[p] += weight * within * depth
+            if water.due[p]:
+                water.lifted[p] += weight * _gain_of_disc(water, k, i, state)
+
+
+@inner_kernel
+def _gain_of_corners(water: Water, k: int) -> float:
+    # What the integral of the depth in a pool, below its floor that of all of it, gains on the way, over the area.
+    at, top, bottom = water.corner, water.pool[k, TOP], water.pool[k, BOTTOM]
+    lowest = min(at[0, BEFORE], at[0, AFTER], at[1, BEFORE], at[1, AFTER])
+    lowest = min(lowest, at[2, BEFORE], at[2, AFTER])
+    if lowest >= top or _is_beside(water, k):
+        return 0.0
+    gain = _depth_below(water, k, top - at[0, AFTER], top - at[1, AFTER], top - at[2, AFTER])
+    gain -= _depth_below(water, k, top - at[0, BEFORE], top - at[1, BEFORE], top - at[2, BEFORE])
+    if lowest < bottom:
+        gain -= _depth_below(water, k, bottom - at[0, AFTER], bottom - at[1, AFTER], bottom - at[2, AFTER])
+        gain += _depth_below(water, k, bottom - at[0, BEFORE], bottom - at[1, BEFORE], bottom - at[2, BEFORE])
+    return gain
+
+
+@inner_kernel
+def _gain_of_disc(water: Water, k: int, i: int, state: State) -> float:
+    p, radius, top, bottom = water.disc[i], radius_of(water, i, state), water.pool[k, TOP], water.pool[k, BOTTOM]
+    low, high = water.before[p, 1], water.after[p, 1]
+    if min(low, high) >= top + radius:
+        return 0.0
+    within = disc_within(water, k, 0.5 * (water.before[p, 0] + water.after[p, 0]), radius)
+    if not within > 0.0:
+        return 0.0
+    gain = disc_depth(top - high, radius) - disc_depth(top - low, radius)
+    if min(low, high) < bottom + radius:
+        gain -= disc_depth(bottom - high, radius) - disc_depth(bottom - low, radius)
+    return within * gain
 
 
 @inner_kernel

@@ -86,10 +86,10 @@ NEAR = 1e-6
 # (omega h / 2)^2 up to which what swings straight does so with the right period, and what counts as straight [1].
 WIDEST_SWING = 0.25
 STRAIGHT = 1e-3
-SLOWEST = 1e-7
+SLOWEST = 1e-6
 # Parts of a body that lift makes faster than this beside each other [m/s] in a step are soft in water that is hundreds of
 # times denser: their springs cannot hold them.
-HARDEST_LIFT = 15.0
+HARDEST_LIFT = 4.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
 
@@ -411,12 +411,13 @@ def _find_held(water: Water, state: State, label: Slots, kept: KeptContacts, cou
 def _sum_bodies(water: Water, state: State, start: FloatRows, label: Slots, numbers: Floats) -> None:
     load, body, mass = water.load, water.body, state.mass
     for p in range(body.shape[0]):
-        for column in range(HELD):
-            body[p, column] = 0.0
+        if water.due[p]:
+            for column in range(HELD):
+                body[p, column] = 0.0
     for p in range(body.shape[0]):
         g = label[p]
         # A label is a particle of the body.
-        if not state.particle_active[p] or not state.inverse_mass[p] > 0.0:
+        if not water.due[g] or not state.particle_active[p] or not state.inverse_mass[p] > 0.0:
             continue
         weight = mass[p] * state.gravity_scale[p]
         body[g, MASS] += mass[p]
