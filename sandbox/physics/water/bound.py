@@ -38,6 +38,7 @@ from sandbox.physics.water.displacers import (
     Water,
 )
 from sandbox.physics.water.lift import add_energies
+from sandbox.physics.water.push import SLOWEST
 
 # Halvings of the range in which the velocities are looked for; the part of its work that lift may give too much, as it
 # takes as much elsewhere; and what is rounding of energy [1].
@@ -52,7 +53,7 @@ def bound_lift(
 ) -> None:  # fmt: skip
     """Slow down what lift has given too much energy in a step of h [s]; start, label, early: see push.py."""
     g, body, load, velocity = max(0.0, -numbers[GRAVITY_Y]), water.body, water.load, state.velocity
-    if not g > 0.0 or not _find_wet(water, state, label):
+    if not g > 0.0 or not _find_wet(water, state, start, label):
         return
     for p in range(label.shape[0]):
         ahead = 0.0 if water.is_joined[p] else early
@@ -89,17 +90,25 @@ def bound_lift(
 
 
 @inner_kernel
-def _find_wet(water: Water, state: State, label: Slots) -> bool:
-    # Bodies that are lifted are due, with nothing summed up of them; whether there are any.
+def _find_wet(water: Water, state: State, start: FloatRows, label: Slots) -> bool:
+    # Bodies that are lifted and move are due, with nothing summed up of them; whether there are any.
     body, found = water.body, False
     for p in range(label.shape[0]):
-        body[p, UNDER] = body[p, EXCESS] = body[p, TOOK_X] = body[p, WORK] = body[p, RISE] = body[p, ALLOWED] = 0.0
+        body[p, UNDER] = body[p, MOVES] = 0.0
+        body[p, EXCESS] = body[p, TOOK_X] = body[p, WORK] = body[p, RISE] = body[p, ALLOWED] = 0.0
     for p in range(label.shape[0]):
-        if water.wet[p] and water.load[p, FY] != 0.0:
+        if water.load[p, FY] != 0.0:
             body[label[p], UNDER] = 1.0
-            found = True
+        fastest = max(abs(start[p, 1]), abs(state.velocity[p, 1]))
+        body[label[p], MOVES] = max(body[label[p], MOVES], fastest)
     for p in range(label.shape[0]):
-        water.due[p] = body[label[p], UNDER] > 0.0 and state.inverse_mass[p] > 0.0 and state.particle_active[p]
+        water.due[p] = (
+            body[label[p], UNDER] > 0.0
+            and body[label[p], MOVES] > SLOWEST
+            and state.inverse_mass[p] > 0.0
+            and state.particle_active[p]
+        )
+        found = found or water.due[p]
     return found
 
 
