@@ -78,7 +78,7 @@ def bound_lift(
     for p in range(label.shape[0]):
         if label[p] == p and water.due[p]:
             body[p, EXCESS] += body[p, UNDER] + max(0.0, body[p, TOOK_X])
-            spared = SPARED * body[p, WORK] + max(ROUNDING, body[p, SWING]) * abs(body[p, MOVES])
+            spared = (SPARED + body[p, SWING]) * body[p, WORK] + ROUNDING * abs(body[p, MOVES])
             water.due[p] = body[p, EXCESS] > spared
             found = found or water.due[p]
             # What all else has given.
