@@ -83,8 +83,10 @@ from sandbox.physics.water.shapes import PI, clipped, disc_area_below
 # its velocity by less than this [m/s] in a step.
 MOST_LOOKS = 40
 NEAR = 1e-6
-# (omega h / 2)^2 up to which what swings straight does so with the right period, and what counts as straight [1].
+# (omega h / 2)^2 up to which what swings straight does so with the right period, below which speed [m/s], as it costs
+# energy where a flat side goes through the surface, and what counts as straight [1].
 WIDEST_SWING = 0.25
+GENTLE = 0.25
 STRAIGHT = 1e-3
 SLOWEST = 1e-6
 # Parts of a body that lift makes faster than this beside each other [m/s] in a step are soft in water that is hundreds of
@@ -281,8 +283,8 @@ def _look_again(water: Water, p: int, is_first: bool, h: float) -> bool:
     miss = (m * body[p, RISE] * rise + inertia * body[p, TURN] * turn) / whole - part
     if body[p, SWING] > 0.0 and abs(miss + part - 1.0 + body[p, SWING] * part) <= STRAIGHT * body[p, SWING]:
         return False
-    is_second = body[p, HIGH_MISS] == 0.0
-    body[p, SWING] = -miss if is_second and -miss > NEAR and -miss < WIDEST_SWING else 0.0
+    is_gentle = body[p, HIGH_MISS] == 0.0 and abs(body[p, PY] / m) + abs(body[p, RISE]) < GENTLE
+    body[p, SWING] = -miss if is_gentle and -miss > NEAR and -miss < WIDEST_SWING else 0.0
     if miss > 0.0:
         body[p, HIGH_MISS] *= 0.5 if body[p, LOW] > 0.0 else 1.0
         body[p, LOW], body[p, LOW_MISS] = part, miss
