@@ -41,9 +41,10 @@ from sandbox.physics.water.lift import add_energies
 from sandbox.physics.water.push import SLOWEST
 
 # Halvings of the range in which the velocities are looked for; the part of its work that lift may give too much, as it
-# takes as much elsewhere; and what is rounding of energy [1].
+# takes as much elsewhere; that of the velocity which is lost where all of it turns; and what is rounding of energy [1].
 HALVINGS = 24
 SPARED = 5e-4
+LOST = 0.1
 ROUNDING = 1e-9
 
 
@@ -62,12 +63,13 @@ def bound_lift(
             load[p, U + axis] = velocity[p, axis]
         if water.due[p]:
             k, u, v = label[p], velocity[p, 0], velocity[p, 1]
-            fx, fy = load[p, RXX] * u + load[p, RXY] * v, load[p, RXY] * u + load[p, RYY] * v
             work = 0.5 * h * load[p, FY] * (start[p, 1] + v)
             body[k, EXCESS] += work
             body[k, WORK] += abs(work)
-            # Drag of a velocity that lift has turned round would give energy, too.
-            body[k, TOOK_X] -= 0.5 * h * (fx * (start[p, 0] + u) + fy * (start[p, 1] + v))
+            if not water.is_joined[p]:
+                # Drag of a velocity that lift has turned round would give energy, too.
+                fx, fy = load[p, RXX] * u + load[p, RXY] * v, load[p, RXY] * u + load[p, RYY] * v
+                body[k, TOOK_X] -= 0.5 * h * (fx * (start[p, 0] + u) + fy * (start[p, 1] + v))
             body[k, RISE] += state.mass[p] * (start[p, 1] + v)
             # Kinetic energy as the step begins, and that of weights as _measure has it.
             squared = start[p, 0] * start[p, 0] + start[p, 1] * start[p, 1]
@@ -128,8 +130,10 @@ def _turn_back(
             if water.due[p]:
                 back, rise = body[k, PART], body[k, RISE]
                 in_all = back if rise == 0.0 else 0.0
-                state.velocity[p, 0] = load[p, U] - in_all * (load[p, U] + start[p, 0])
-                state.velocity[p, 1] = load[p, V] - in_all * (load[p, V] + start[p, 1]) - back * rise
+                # What went back all of its way would go to and fro for ever.
+                kept = 1.0 - LOST * in_all if halving == HALVINGS - 1 else 1.0
+                state.velocity[p, 0] = kept * (load[p, U] - in_all * (load[p, U] + start[p, 0]))
+                state.velocity[p, 1] = kept * (load[p, V] - in_all * (load[p, V] + start[p, 1])) - back * rise
         _measure(water, state, start, label, g, early, h)
         for p in range(label.shape[0]):
             # An impulse works on the mean of the velocities before and after.
