@@ -44,7 +44,7 @@ from sandbox.physics.water.push import SLOWEST
 # takes as much elsewhere; that of the velocity which is lost where all of it turns; and what is rounding of energy [1].
 HALVINGS = 24
 SPARED = 5e-4
-LOST = 0.1
+LOST = 0.01
 ROUNDING = 1e-9
 
 
