@@ -277,45 +277,6 @@ def test_what_is_hundreds_of_times_lighter_than_water_comes_up_and_rests(kind, s
 # ---- energy
 
 
-def bobbing(share, stiffness, damping, angle, solver="direct"):
-    """Energy [m g 1 m] at each tick of a box that falls 1 m into calm water, and its largest swing within a step.
-
-    Positions are looked at between two velocities: with the mean of those, energy lies above what is constant by
-    h^2 F^2 / 24 m, which is nothing that adds up.
-    """
-    settings = {"solver": solver, "iterations": 20}
-    world = water_world(
-        [pool(**CALM)], settings=settings, **jelly((1.0, 0.5), share, 1.25, stiffness, damping, angle=angle)
-    )
-    moves, h = free(world), 1.0 / 60.0
-    mass, before, found, swing = world.mass[moves], world.velocity[moves].copy(), [], 0.0
-    for _ in range(1200):
-        height = gravity_energy(world)
-        step(world)
-        mean, push = 0.5 * (before + world.velocity[moves]), (world.velocity[moves] - before) / h
-        before = world.velocity[moves].copy()
-        found.append(0.5 * float(np.sum(mass[:, None] * mean * mean)) + height)
-        force = mass @ push
-        swing = max(swing, h * h * float(force @ force) / (24.0 * mass.sum()))
-    whole = mass.sum() * G
-    return np.array(found) / whole, swing / whole
-
-
-@pytest.mark.parametrize("angle", [0.0, 0.3])
-@pytest.mark.parametrize(("stiffness", "damping"), [(1.0, 1.0), (0.4, 0.6)])
-@pytest.mark.parametrize("share", [0.5, 0.05])
-def test_what_falls_into_calm_water_never_has_more_energy_than_at_the_start(share, stiffness, damping, angle):
-    energy, swing = bobbing(share, stiffness, damping, angle)
-    assert swing < 0.01
-    assert energy.max() <= energy[1] + swing + 1e-3
-    assert energy[-60:].mean() <= energy[1] + 1e-3
-
-
-def test_a_light_box_that_bobs_keeps_nearly_all_of_its_energy():
-    energy, _ = bobbing(0.05, 1.0, 1.0, 0.0)
-    assert energy[-60:].mean() > 0.98 * energy[1]
-
-
 def test_energy_of_a_level_counts_the_water_that_is_displaced():
     deep, high = (water_world(particles=[disc(1.0, y)]) for y in (-2.0, -1.0))
     # As heavy as water: lifting it lifts nothing.

@@ -1,8 +1,8 @@
 """Bound: lift gives no more energy in a step than the water loses, whichever way a body goes.
 
 Lift is made for the way that a body would take as a whole, which nothing holds (push.py). What is soft, lands or is let
-go takes another, and drag brakes at once what the place has run ahead of. At the velocities after the springs, and places
-that belong to them (lift.py), lift has given
+go takes another, and drag brakes at once what the place has run ahead of. At the velocities after the springs, and at
+places that belong to them (lift.py), lift has given
 
     h F (v + v') / 2 + U(x + h v' / 2) - U(x - h v / 2)
 
@@ -40,12 +40,13 @@ from sandbox.physics.water.displacers import (
 from sandbox.physics.water.lift import add_energies
 from sandbox.physics.water.push import SLOWEST
 
-# Halvings of the range in which the velocities are looked for; the part of its work that lift may give too much, as it
-# takes as much elsewhere; that of the velocity which is lost where all of it turns; and what is rounding of energy [1].
+# Halvings of the range in which the velocities are looked for.
 HALVINGS = 24
+# Part of its work that lift may give too much, as it takes as much elsewhere; what is rounding of energy [1].
 SPARED = 5e-4
-LOST = 0.01
 ROUNDING = 1e-9
+# Part of the velocity that is lost where all of it turns. Without, some would go to and fro for ever; more gives energy.
+LOST = 0.01
 
 
 @inner_kernel
@@ -152,7 +153,7 @@ def _turn_back(
 def _measure(
     water: Water, state: State, start: FloatRows, label: Slots, g: float, early: float, h: float
 ) -> None:  # fmt: skip
-    # Of bodies that are due, after their way: kinetic energy and that of weights in MOVES, what U has gained in UNDER [J].
+    # Of bodies that are due, after their way: kinetic energy and that of weights in MOVES, what U gained in UNDER [J].
     body, velocity = water.body, state.velocity
     for p in range(label.shape[0]):
         body[p, MOVES] = 0.0

@@ -41,11 +41,12 @@ NO_HULLS: SlotRows = np.zeros((0, HULL_NUMBERS), np.int64)
 FX, FY, RXX, RXY, RYY, DX, DY, OWN_MASS, OWN_INVERSE, U, V, LOADS = range(12)
 # Columns of `body`, at the label of a body: mass [kg], momentum [kg m/s] (2), force and weight [N] (2); resistance
 # [kg/s] xx, xy, yy; about its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; the
-# drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); whether a pin, a hand or a
-# contact holds it. What drag changes of its velocity [m/s] (2), and that lift alone does, and its turn [rad/s]. How
-# forces raise it [m/s] and turn it [rad/s] in a step where it would go on as it does; the part of that with which its way
-# is looked at, the largest known to be too little, the smallest to be too much, what each is off by; (omega h / 2)^2 of a
-# swing. After the springs: the energy [J] that lift has given too much, that of its motion, and U.
+# drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); what holds it. What drag
+# changes of its velocity [m/s] (2); what lift alone does [m/s], and its angular momentum [kg m^2/s], and which share of
+# lift acts where it is. How forces raise it [m/s] and turn it [rad/s] in a step where it would go on as it does; the
+# part of that with which its way is looked at, the largest known to be too little, the smallest to be too much, with
+# what each is off by; (omega h / 2)^2 of a swing. After the springs [J]: what lift has given too much, and in the end
+# what all else has; the energy of its motion; what U has gained; what is allowed; and the work of lift.
 MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
 HELD, CX, CY, LIFT, LIFT_TURN, SHARE, RISE, TURN, PART, LOW, LOW_MISS, HIGH, HIGH_MISS, SWING = range(16, 30)
 EXCESS, MOVES, UNDER, ALLOWED, WORK, SUMS = range(30, 36)

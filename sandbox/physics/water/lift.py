@@ -8,8 +8,8 @@
 A pool is what lies below its surface less what lies below its floor, between its sides. So what floors, seams and sides
 cut is lifted by the part that is in, and pools flush on each other are one.
 
-Velocities are half a step behind places. At x - h v / 2 and x + h v' / 2 they belong together, and a lift that is the mean
-of U's gradient on the straight way between the two gives just what U loses (a discrete gradient: Gonzalez 1996),
+Velocities are half a step behind places. At x - h v / 2 and x + h v' / 2 they belong together, and a lift that is the
+mean of U's gradient on the straight way between the two gives just what U loses (a discrete gradient: Gonzalez 1996),
 
     (m / 2) (v'^2 - v^2) = h F (v + v') / 2 = U(x - h v / 2) - U(x + h v' / 2)
 
@@ -41,7 +41,7 @@ ABOVE_ALL = 1e300
 
 @inner_kernel
 def lift_due(water: Water, state: State, g: float) -> None:
-    """Lift the particles that are due, on the way from `before` to `after`: FY [N] of their load; wet: those it finds."""
+    """Lift the particles that are due, on the way from `before` to `after`: FY [N] of their load; those are `wet`."""
     for p in range(water.due.shape[0]):
         if water.due[p]:
             water.load[p, FY] = 0.0

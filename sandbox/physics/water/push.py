@@ -1,4 +1,4 @@
-"""Push: what water does to velocities in a step, before the springs act: lift (lift.py), and drag that cannot overshoot.
+"""Push: what water does to velocities in a step, before springs act: lift (lift.py), and drag that cannot overshoot.
 
 Drag of a side of length L and normal n that moves at u through the water, and that of a disc:
 
@@ -8,10 +8,11 @@ It is a resistance D times u, implicit,
 
     (m + h D) v' = m v + h (F + D flow)
 
-Of what nothing holds that is done by particle with the velocity before anything acts, and then to its motion as a whole,
-with all that forces add in the step: else it would rise and sink too fast by the change of its velocity in a step. What
-pins, hands or contacts hold is solved with the water that comes along as a part of its mass, m + h d, d = the larger of
-the two resistances of D. So it bears h D (flow - v) where it rests, all of it, and is let go with no more than its share.
+Of what nothing holds that is done by particle with the velocity before anything acts, and then to its motion as a
+whole, with all that forces add in the step: else it would rise and sink too fast by the change of its velocity in a
+step. What pins, hands or contacts hold is solved with the water that comes along as a part of its mass, m + h d, d = the
+larger of the two resistances of D. So it bears h D (flow - v) where it rests, all of it, and is let go with no more
+than its share.
 """
 
 import math
@@ -89,8 +90,8 @@ WIDEST_SWING = 0.25
 GENTLE = 0.25
 STRAIGHT = 1e-3
 SLOWEST = 1e-6
-# Parts of a body that lift makes faster than this beside each other [m/s] in a step are soft in water that is hundreds of
-# times denser: their springs cannot hold them.
+# Lift makes no part of a body faster beside its motion as a whole than this [m/s] in a step. In water that is hundreds
+# of times denser no spring would hold it. Less spreads lift over bodies that bend.
 HARDEST_LIFT = 4.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
@@ -104,8 +105,8 @@ def push_by_water(
     """Change velocities as water does in a step of h [s], and the mass of what is held until `end_push`.
 
     start [m/s] (n, 2): velocities before anything acted; label (n,): of bodies, see joints/hands.py; kept: the contacts
-    of the last step, so many; early [s]: what nothing joins goes ahead of h v' by early (v - v'); weighs_springs: how stiff a spring is follows from
-    inverse masses, and what it pulls is weighed by masses.
+    of the last step, so many; early [s]: what nothing joins goes ahead of h v' by early (v - v'); weighs_springs: how
+    stiff a spring is follows from inverse masses, and what it pulls is weighed by masses.
     """
     # Gravity that points upwards makes no pressure.
     g = max(0.0, -numbers[GRAVITY_Y])

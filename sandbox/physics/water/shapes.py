@@ -1,7 +1,7 @@
 """Wet shapes: what of a disc, a triangle or a side lies below a surface, and between the sides of a pool.
 
-The integral of the depth over what is wet is homogeneous of degree 1 in the depths of a triangle's corners, whose shares
-are its gradient (Euler). So that integral is the sum of the depths times the shares, whichever part of it is meant.
+The integral of the depth over what is wet is homogeneous of degree 1 in the depths of a triangle's corners, whose
+shares are its gradient (Euler). So it is the sum of the depths times the shares, whichever part of it is meant.
 """
 
 import math
