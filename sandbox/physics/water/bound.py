@@ -45,7 +45,7 @@ HALVINGS = 24
 # Part of its work that lift may give too much, as it takes as much elsewhere; what is rounding of energy [1].
 SPARED = 5e-4
 ROUNDING = 1e-9
-# Part of the velocity that is lost where all of it turns. Without, some would go to and fro for ever; more gives energy.
+# Part of the velocity that is lost where all of it turns. Without, some goes to and fro for ever; more gives energy.
 LOST = 0.01
 
 

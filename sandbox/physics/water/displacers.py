@@ -97,7 +97,7 @@ class Water(NamedTuple):
 
 
 class WaterScratch(NamedTuple):
-    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge; by owner (see _key):
+    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge; by owner, see _key:
     whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it is of a whole hull."""
 
     lost: Annotated[Floats, "particles"]

@@ -10,8 +10,8 @@ It is a resistance D times u, implicit,
 
 Of what nothing holds that is done by particle with the velocity before anything acts, and then to its motion as a
 whole, with all that forces add in the step: else it would rise and sink too fast by the change of its velocity in a
-step. What pins, hands or contacts hold is solved with the water that comes along as a part of its mass, m + h d, d = the
-larger of the two resistances of D. So it bears h D (flow - v) where it rests, all of it, and is let go with no more
+step. What pins, hands or contacts hold is solved with the water that comes along as a part of its mass, m + h d, d =
+the larger of the two resistances of D. So it bears h D (flow - v) where it rests, all of it, and is let go with no more
 than its share.
 """
 
