@@ -38,10 +38,11 @@ from sandbox.physics.water.displacers import (
     Water,
 )
 from sandbox.physics.water.lift import add_energies
-from sandbox.physics.water.push import SLOWEST
 
 # Halvings of the range in which the velocities are looked for.
 HALVINGS = 24
+# What is slower than this [m/s] is not looked at.
+SLOWEST = 1e-3
 # Part of its work that lift may give too much, as it takes as much elsewhere; what is rounding of energy [1].
 SPARED = 5e-4
 ROUNDING = 1e-9
