@@ -10,7 +10,7 @@ from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.water.displacers import FX, FY
-from sandbox.physics.water.push import arc_cosine, disc_area_below, disc_depth, mean_depth, wet_shares
+from sandbox.physics.water.shapes import arc_cosine, disc_area_below, disc_depth, wet_shares
 from tests.support.pools import (
     CALM,
     DENSITY,
@@ -39,6 +39,11 @@ def disc(share, y=0.0, radius=0.3, **more):
 
 
 # ---- closed forms
+
+
+def mean_depth(*depths):
+    """Integral of the depth over what is wet of a triangle, over its area."""
+    return sum(depth * share for depth, share in zip(depths, wet_shares(*depths), strict=True))
 
 
 def test_wet_parts_are_what_small_steps_add_up_to():
@@ -270,45 +275,6 @@ def test_what_is_hundreds_of_times_lighter_than_water_comes_up_and_rests(kind, s
 
 
 # ---- energy
-
-
-def bobbing(share, stiffness, damping, angle, solver="direct"):
-    """Energy [m g 1 m] at each tick of a box that falls 1 m into calm water, and its largest swing within a step.
-
-    Positions are looked at between two velocities: with the mean of those, energy lies above what is constant by
-    h^2 F^2 / 24 m, which is nothing that adds up.
-    """
-    settings = {"solver": solver, "iterations": 20}
-    world = water_world(
-        [pool(**CALM)], settings=settings, **jelly((1.0, 0.5), share, 1.25, stiffness, damping, angle=angle)
-    )
-    moves, h = free(world), 1.0 / 60.0
-    mass, before, found, swing = world.mass[moves], world.velocity[moves].copy(), [], 0.0
-    for _ in range(1200):
-        height = gravity_energy(world)
-        step(world)
-        mean, push = 0.5 * (before + world.velocity[moves]), (world.velocity[moves] - before) / h
-        before = world.velocity[moves].copy()
-        found.append(0.5 * float(np.sum(mass[:, None] * mean * mean)) + height)
-        force = mass @ push
-        swing = max(swing, h * h * float(force @ force) / (24.0 * mass.sum()))
-    whole = mass.sum() * G
-    return np.array(found) / whole, swing / whole
-
-
-@pytest.mark.parametrize("angle", [0.0, 0.3])
-@pytest.mark.parametrize(("stiffness", "damping"), [(1.0, 1.0), (0.4, 0.6)])
-@pytest.mark.parametrize("share", [0.5, 0.05])
-def test_what_falls_into_calm_water_never_has_more_energy_than_at_the_start(share, stiffness, damping, angle):
-    energy, swing = bobbing(share, stiffness, damping, angle)
-    assert swing < 0.01
-    assert energy.max() <= energy[1] + swing + 1e-3
-    assert energy[-60:].mean() <= energy[1] + 1e-3
-
-
-def test_a_light_box_that_bobs_keeps_nearly_all_of_its_energy():
-    energy, _ = bobbing(0.05, 1.0, 1.0, 0.0)
-    assert energy[-60:].mean() > 0.98 * energy[1]
 
 
 def test_energy_of_a_level_counts_the_water_that_is_displaced():

@@ -4,7 +4,6 @@ Where Cs, Cd or settings ramp (ramps.py), energies and forces are of what was in
 """
 
 import copy
-import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeVar
 
@@ -14,7 +13,7 @@ from sandbox.physics.arena import FIRST_ARENA, Arena, begin, lay_out
 from sandbox.physics.arrays import Floats, with_empty
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
-from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
+from sandbox.physics.jit import Bundle, bundle, kernel, unpack
 from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
@@ -24,8 +23,8 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct.system import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.water.displacers import BOTTOM, DENSITY, FLOW_X, FLOW_Y, LEFT, RIGHT, TOP, Water, lay_out_water
-from sandbox.physics.water.push import PI, area_of, disc_depth, mean_depth, middle_of
+from sandbox.physics.water.displacers import FLOW_X, FLOW_Y, Water, lay_out_water
+from sandbox.physics.water.lift import ABOVE_ALL, add_energies
 from sandbox.physics.world import World
 
 AnyState = TypeVar("AnyState", World, Snapshot, World | Snapshot)
@@ -235,53 +234,16 @@ def _derive_water(pointer: Bundle[WaterPlace], arena: Arena) -> None:
 @kernel
 def _energy_lifted(pointer: Bundle[WaterPlace], g: float) -> float:
     place = unpack(pointer)
-    state, water, total = place.state, place.water, 0.0
-    for k in range(water.pool.shape[0]):
-        volume = 0.0
-        for i in range(water.triangle.shape[0]):
-            volume += _under_triangle(water, k, i, state)
-        for o in range(water.shell_start.shape[0] - 1):
-            volume += _under_shell(water, k, o, state)
-        for i in range(water.disc.shape[0]):
-            volume += _under_disc(water, k, i, state)
-        total += water.pool[k, DENSITY] * g * volume
+    water, total = place.water, 0.0
+    for p in range(water.lifted.shape[0]):
+        water.lifted[p], water.due[p] = 0.0, True
+        for axis in range(2):
+            water.before[p, axis] = water.after[p, axis] = place.state.position[p, axis]
+        water.before[p, 1] = ABOVE_ALL
+    add_energies(water, place.state, g)
+    for p in range(water.lifted.shape[0]):
+        total += water.lifted[p]
     return total
-
-
-@inner_kernel
-def _under_triangle(water: Water, k: int, i: int, state: State) -> float:
-    pool, x = water.pool, state.position
-    p, q, r = water.triangle[i, 0], water.triangle[i, 1], water.triangle[i, 2]
-    middle = (x[p, 0] + x[q, 0] + x[r, 0]) / 3.0
-    if not (pool[k, LEFT] <= middle and middle <= pool[k, RIGHT]):
-        return 0.0
-    if not x[p, 1] + x[q, 1] + x[r, 1] >= 3.0 * pool[k, BOTTOM]:
-        return 0.0
-    top = pool[k, TOP]
-    depth = mean_depth(top - x[p, 1], top - x[q, 1], top - x[r, 1])
-    return depth * abs(state.constraint_rest[water.constraint[i], 0])
-
-
-@inner_kernel
-def _under_shell(water: Water, k: int, o: int, state: State) -> float:
-    pool, y, total = water.pool, state.position, 0.0
-    middle_x, middle_y = middle_of(water, o, y)
-    if not (pool[k, LEFT] <= middle_x and middle_x <= pool[k, RIGHT] and pool[k, BOTTOM] <= middle_y):
-        return 0.0
-    for e in range(water.shell_start[o], water.shell_start[o + 1]):
-        a, b, top = water.shell_a[e], water.shell_b[e], pool[k, TOP]
-        total += water.shell_share[e] * mean_depth(top - middle_y, top - y[a, 1], top - y[b, 1])
-    return area_of(water, o, state) * total
-
-
-@inner_kernel
-def _under_disc(water: Water, k: int, i: int, state: State) -> float:
-    pool, p, area = water.pool, water.disc[i], water.disc_area[i]
-    radius = math.sqrt(area / PI) if area > 0.0 else state.radius[p]
-    x, y = state.position[p, 0], state.position[p, 1]
-    if not (pool[k, LEFT] <= x and x <= pool[k, RIGHT] and pool[k, BOTTOM] <= y and radius > 0.0):
-        return 0.0
-    return disc_depth(pool[k, TOP] - y, radius)
 
 
 @dataclass(frozen=True)

@@ -110,12 +110,13 @@ def _energy_bound(world: World) -> str:
     springs = _working(world) & (world.law != LAW_HOOKE) & (stiffness > damping)
     constraints = (constraint_count(world) > 0.0) & (world.constraint_stiffness > world.constraint_damping)
     underdamped = np.flatnonzero(np.append(springs, constraints))
+    water = "; what water does is bounded, not proven" if len(world.water) else ""
     if len(underdamped):
         return (
             f"proven: energy never exceeds four times the start and the work done, whatever Cs and Cd "
-            f"(Cs is above Cd at {_owner_name(world, int(underdamped[0]))})"
+            f"(Cs is above Cd at {_owner_name(world, int(underdamped[0]))}){water}"
         )
-    return "proven: energy never exceeds the start and the work done, because Cs <= Cd on every spring"
+    return f"proven: energy never exceeds the start and the work done, because Cs <= Cd on every spring{water}"
 
 
 def _equal_limit(world: World, effective: float) -> float:

@@ -36,14 +36,22 @@ LEFT, BOTTOM, RIGHT, TOP, DENSITY, FAST, SLOW, FLOW_X, FLOW_Y, POOL_NUMBERS = ra
 HULL, SPRING, TURNED, HULL_NUMBERS = range(4)
 NO_POOLS: FloatRows = np.zeros((0, POOL_NUMBERS))
 NO_HULLS: SlotRows = np.zeros((0, HULL_NUMBERS), np.int64)
-# Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2).
-FX, FY, RXX, RXY, RYY, DX, DY, LOADS = range(8)
+# Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2); its own
+# mass and inverse mass where water comes along in a step; its velocity [m/s] (2) after the springs.
+FX, FY, RXX, RXY, RYY, DX, DY, OWN_MASS, OWN_INVERSE, U, V, LOADS = range(12)
 # Columns of `body`, at the label of a body: mass [kg], momentum [kg m/s] (2), force and weight [N] (2); resistance
 # [kg/s] xx, xy, yy; about its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; the
-# drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); whether a pin, a hand or a
-# contact holds it. And what follows: its turning acceleration [rad/s^2], and the change of its velocity [m/s] (2).
+# drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); what holds it. What drag
+# changes of its velocity [m/s] (2); what lift alone does [m/s], and its angular momentum [kg m^2/s], and which share of
+# lift acts where it is. How forces raise it [m/s] and turn it [rad/s] in a step where it would go on as it does; the
+# part of that with which its way is looked at, the largest known to be too little, the smallest to be too much, with
+# what each is off by; (omega h / 2)^2 of a swing. After the springs [J]: what lift has given too much, and in the end
+# what all else has; the energy of its motion; what U has gained; what is allowed; and the work of lift.
 MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
-HELD, TURN, CX, CY, SUMS = range(16, 21)
+HELD, CX, CY, LIFT, LIFT_TURN, SHARE, RISE, TURN, PART, LOW, LOW_MISS, HIGH, HIGH_MISS, SWING = range(16, 30)
+EXCESS, MOVES, UNDER, ALLOWED, WORK, SUMS = range(30, 36)
+# What holds a body.
+BY_CONTACTS, BY_PINS = 1.0, 2.0
 
 
 class Pool(NamedTuple):
@@ -77,21 +85,24 @@ class Water(NamedTuple):
     disc: Slots
     disc_area: Floats  # [m^2]; 0: it has its own radius
     is_bare: Flags  # whether a disc is dragged as such, as no edge of it is
-    is_loose: Flags  # whether nothing is joined to it
+    is_joined: Flags  # (n,): whether springs or constraints join a particle to anything
     load: FloatRows  # (n, LOADS)
     body: FloatRows  # (n, SUMS)
     wet: Flags  # (n,)
+    due: Flags  # (n,): whose lift is looked for
+    lifted: Floats  # [J] (n,): energy of what is lifted, at one particle of each
+    before: FloatRows  # [m] (n, 2): where the way of a step begins, as in lift.py, and ends
+    after: FloatRows
+    corner: FloatRows  # (3, 3): see lift.py
 
 
 class WaterScratch(NamedTuple):
-    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge, is joined to
-    anything; by owner (see _key): whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it
-    is of a whole hull."""
+    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge; by owner, see _key:
+    whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it is of a whole hull."""
 
     lost: Annotated[Floats, "particles"]
     in_triangle: Annotated[Flags, "particles"]
     has_edge: Annotated[Flags, "particles"]
-    is_joined: Annotated[Flags, "particles"]
     enclosed: Annotated[Flags, "2 * particles"]
     is_whole: Annotated[Flags, "hulls"]
     is_hull: Annotated[Flags, "springs"]
@@ -123,10 +134,15 @@ def lay_out_water(state: State, arena: Arena, water: Water) -> None:
     set_field(water, "disc", new_slots(arena, particles))
     set_field(water, "disc_area", new_floats(arena, particles))
     set_field(water, "is_bare", new_flags(arena, particles))
-    set_field(water, "is_loose", new_flags(arena, particles))
+    set_field(water, "is_joined", new_flags(arena, particles))
     set_field(water, "load", new_float_rows(arena, particles, LOADS))
     set_field(water, "body", new_float_rows(arena, particles, SUMS))
     set_field(water, "wet", new_flags(arena, particles))
+    set_field(water, "due", new_flags(arena, particles))
+    set_field(water, "lifted", new_floats(arena, particles))
+    set_field(water, "before", new_float_rows(arena, particles, 2))
+    set_field(water, "after", new_float_rows(arena, particles, 2))
+    set_field(water, "corner", new_float_rows(arena, 3, 3))
     scratch = mark(arena)
     hulls = water.hull[water.hull.shape[0] - 1, HULL] + 1 if water.hull.shape[0] > 0 else 0
     work = new_tuple(WaterScratch, arena, particles=particles, springs=springs, hulls=hulls)
@@ -155,7 +171,7 @@ def _list_triangles(state: State, water: Water, work: WaterScratch) -> int:
         first = state.constraint_first[k]
         for c in range(first, first + state.constraint_corners[k]):
             if state.constraint_active[k]:
-                work.is_joined[state.corner_particle[c]] = True
+                water.is_joined[state.corner_particle[c]] = True
         if state.constraint_kind[k] != AREA or state.constraint_corners[k] != TRIANGLE:
             continue
         p, q, r = state.corner_particle[first], state.corner_particle[first + 1], state.corner_particle[first + 2]
@@ -240,7 +256,7 @@ def _list_edges(state: State, water: Water, work: WaterScratch) -> int:
         if not state.spring_active[s] or state.material[s] == GRAB_MATERIAL:
             continue
         a, b = state.particle_a[s], state.particle_b[s]
-        work.is_joined[a] = work.is_joined[b] = True
+        water.is_joined[a] = water.is_joined[b] = True
         if state.edge[s] == NO_EDGE:
             continue
         is_outside = work.is_hull[s] or state.edge[s] != LINE
@@ -265,7 +281,6 @@ def _list_discs(state: State, water: Water, work: WaterScratch) -> int:
         water.disc[count] = p
         water.disc_area[count] = work.lost[p]
         water.is_bare[count] = not work.has_edge[p]
-        water.is_loose[count] = not work.is_joined[p]
         count += 1
     return count
 
@@ -285,4 +300,3 @@ def _make_lists_as_long_as(triangles: int, hulls: int, edges: int, springs: int,
     set_field(water, "disc", water.disc[:discs])
     set_field(water, "disc_area", water.disc_area[:discs])
     set_field(water, "is_bare", water.is_bare[:discs])
-    set_field(water, "is_loose", water.is_loose[:discs])
