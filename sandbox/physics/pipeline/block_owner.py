@@ -92,7 +92,7 @@ class BlockOwner:
         water, table = with_empty(Water, pool=world.water, hull=world.hulls), world.form_table
         self.inputs = self.inputs._replace(
             state=state_of(world), good=good_of(world), areas=areas_of(world), forms=table.forms, modes=table.modes,
-            tuning=tuning(), rules=world.rules, water=water,
+            tuning=tuning(), rules=world.rules, ways=world.ways, water=water,
         )  # fmt: skip
         self.inputs.plan[GRAB_PARTICLE], self.inputs.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)
