@@ -39,7 +39,7 @@ class Ways(NamedTuple):
     place: FloatRows  # [m] (k, 2): the last corner
     since: Floats  # (k,): when it was there
     span: FloatRows  # (k, 2): when it was in the zone first and last in the tick; the first is above the last: never
-    before: FloatRows  # (k, COLUMNS): as the substep began, and the velocity [m/s] that it was to end with
+    before: FloatRows  # (k, COLUMNS): as it met something last, or the substep began, and what it was to end with
     flight: FloatRows  # (n, FLIGHT): scratch
     hit: Slots  # (n,): the contact that a particle meets next
     clock: Floats
@@ -82,11 +82,13 @@ def begin_ways(ways: Ways, state: State, rate: int) -> None:
 
 
 @inner_kernel
-def go(ways: Ways, p: int, x: float, y: float, late: float) -> None:
-    """Lead all rows of a particle straight to a place [m], so much later [s] than the clock says."""
+def go(ways: Ways, p: int, x: float, y: float, late: float, meets: bool) -> None:
+    """Lead all rows of a particle straight to a place [m], so late in the substep [s]. meets: something is there."""
     k = ways.first[p]
     while k >= 0:
         _go(ways, k, x, y, ways.clock[NOW] + late * ways.clock[RATE])
+        if meets:
+            _keep(ways, k)
         k = ways.next[k]
 
 
@@ -108,10 +110,15 @@ def begin_step(ways: Ways, now: float) -> None:
     """Begin a substep at that share of the tick."""
     ways.clock[NOW] = now
     for k in range(ways.particle.shape[0]):
-        for axis in range(2):
-            ways.before[k, PLACE_X + axis] = ways.place[k, axis]
-            ways.before[k, FIRST + axis] = ways.span[k, axis]
-        ways.before[k, SINCE] = ways.since[k]
+        _keep(ways, k)
+
+
+@inner_kernel
+def _keep(ways: Ways, k: int) -> None:
+    for axis in range(2):
+        ways.before[k, PLACE_X + axis] = ways.place[k, axis]
+        ways.before[k, FIRST + axis] = ways.span[k, axis]
+    ways.before[k, SINCE] = ways.since[k]
 
 
 @inner_kernel
@@ -131,8 +138,8 @@ def note_velocities(ways: Ways, velocity: FloatRows) -> None:
 
 
 @inner_kernel
-def leave_out_cut(ways: Ways, velocity: FloatRows) -> None:
-    """Leave the corners of this substep out of ways that were cut since: they may lie behind what has cut them."""
+def take_back_cut(ways: Ways, velocity: FloatRows) -> None:
+    """Take ways that were cut since back to what they met last: later corners may lie behind what has cut them."""
     before = ways.before
     for k in range(ways.particle.shape[0]):
         p = ways.particle[k]
@@ -166,7 +173,7 @@ def follow_hits(
             for p in range(flight.shape[0]):
                 late = flight[label[p], BODY]
                 if is_followed(ways, p) and late < math.inf and state.inverse_mass[p] > 0.0:
-                    go(ways, p, flight[p, X] + late * flight[p, VX], flight[p, Y] + late * flight[p, VY], late)
+                    go(ways, p, flight[p, X] + late * flight[p, VX], flight[p, Y] + late * flight[p, VY], late, False)
         for p in range(flight.shape[0]):
             if flight[p, SOONEST] < math.inf:
                 _meet_next(ways, p, contacts, state, start)
@@ -230,7 +237,7 @@ def _meet_next(ways: Ways, p: int, contacts: Contacts, state: State, start: Floa
         flight[p, X + axis] += (late - flight[p, AT]) * flight[p, VX + axis]
     flight[p, AT], flight[p, SOONEST] = late, math.inf
     if is_followed(ways, p):
-        go(ways, p, flight[p, X], flight[p, Y], late)
+        go(ways, p, flight[p, X], flight[p, Y], late, True)
     for end in range(TOUCHING):
         q, weight = weight_of(contacts, c, end)
         if q == p and weight != 0.0:

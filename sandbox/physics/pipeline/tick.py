@@ -65,7 +65,7 @@ from sandbox.physics.solvers.single_pass import solve as solve_single_pass
 from sandbox.physics.substeps import choose_substeps, drag_factor_of, kept_by, limit_rings, turn_into_substep
 from sandbox.physics.untangling.triangle_clamp import clamp_world
 from sandbox.physics.water.push import push_by_water, slow_spins
-from sandbox.physics.ways import begin_step, begin_ways, end_step, follow_hits, leave_out_cut, note_velocities
+from sandbox.physics.ways import begin_step, begin_ways, end_step, follow_hits, note_velocities, take_back_cut
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
 # where it was, once there is more room. Something that it has moved is not sound; springs broke.
@@ -116,7 +116,7 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
             store_impulses(collisions)
             clamp(state, collisions, h)
             if follows:
-                leave_out_cut(ways, state.velocity)
+                take_back_cut(ways, state.velocity)
         if world.triangles.of_world.constraint.shape[0] > 0:
             clamp_world(world.triangles, solver == DIRECT, h)
         integrate_positions(state, h)

@@ -187,7 +187,7 @@ def _take_small_steps(
                 work.motion[k, WX] += small * work.motion[k, VX]
                 work.motion[k, WY] += small * work.motion[k, VY]
                 if work.weight[k] > 0.0 and is_followed(ways, work.particle[k]):
-                    lead(work, k, 0.0, small + late, ways, position)
+                    lead(work, k, small + late, ways, position)
         look(work, 0, rows)
         _iterate(work, rows, small, False, True)
 

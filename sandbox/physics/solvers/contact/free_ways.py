@@ -18,11 +18,10 @@ from sandbox.physics.ways import Ways, go, is_followed
 
 
 @inner_kernel
-def lead(work: FreeContactScratch, k: int, moving: float, late: float, ways: Ways, position: FloatRows) -> None:
-    """Lead the particle of a place to where it is once it has moved for so long [s], so late in the step [s]."""
+def lead(work: FreeContactScratch, k: int, late: float, ways: Ways, position: FloatRows) -> None:
+    """Lead the particle of a place to where it is, so late in the step [s]."""
     p, motion = work.particle[k], work.motion
-    x, y = position[p, 0] + motion[k, WX], position[p, 1] + motion[k, WY]
-    go(ways, p, x + moving * motion[k, VX], y + moving * motion[k, VY], late)
+    go(ways, p, position[p, 0] + motion[k, WX], position[p, 1] + motion[k, WY], late, False)
 
 
 @inner_kernel
@@ -69,7 +68,7 @@ def _follow_hits(
         if found < 0:
             return
         x, y = x + (soonest - now) * vx, y + (soonest - now) * vy
-        go(ways, p, x, y, late + soonest)
+        go(ways, p, x, y, late + soonest, True)
         ux, uy = _pushed(work, found, place)
         vx, vy = vx + ux, vy + uy
         now, last = soonest, found
