@@ -12,13 +12,15 @@ import numpy as np
 
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots, with_empty
 from sandbox.physics.collision.surfaces import SLOWEST_BOUNCE
-from sandbox.physics.collision.types import TOUCHING, Contacts, weight_of
+from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weight_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import State
 from sandbox.physics.zones import Zones, span_inside
 
 # Things that a particle of a body meets in a substep, at most.
 MOST_HITS = 4
+# A substep ends where its velocity leads from where it began, however late it bounces: the way back takes its time too.
+UNTIL_MET = 0.5
 # Columns of `clock`: the time in a tick, and how much of a tick a second is.
 NOW, RATE = range(2)
 # Columns of `before`: place, time, span and velocity.
@@ -152,12 +154,14 @@ def take_back_cut(ways: Ways, velocity: FloatRows) -> None:
 
 @inner_kernel
 def follow_hits(
-    ways: Ways, contacts: Contacts, count: int, state: State, start: FloatRows, label: Slots, h: float
+    ways: Ways, contacts: Contacts, count: int, colliders: Colliders, solid_of: Slots, state: State, start: FloatRows,
+    label: Slots, h: float,
 ) -> None:  # fmt: skip
     """Lead what is followed to where it meets something in a step of h [s], of the first contacts, which are solved.
 
     Until it meets something a particle goes on as at the start, then as it bounces. Where a body meets something, its
-    other particles turn as well. start [m/s] (n, 2): velocities before anything acted; label (n,): see label_bodies.
+    other particles turn as well, and what is behind in a solid meets nothing, though it is pushed.
+    start [m/s] (n, 2): velocities before anything acted; label (n,): see label_bodies; solid_of: see Outline.
     """
     flight = ways.flight
     for p in range(flight.shape[0]):
@@ -168,15 +172,29 @@ def follow_hits(
         if not _find_next(ways, contacts, count, state, start, h):
             return
         if passed == 0:
-            for p in range(flight.shape[0]):
-                flight[label[p], BODY] = min(flight[label[p], BODY], flight[p, SOONEST])
-            for p in range(flight.shape[0]):
-                late = flight[label[p], BODY]
-                if is_followed(ways, p) and late < math.inf and state.inverse_mass[p] > 0.0:
-                    go(ways, p, flight[p, X] + late * flight[p, VX], flight[p, Y] + late * flight[p, VY], late, False)
+            _turn_bodies(ways, colliders, solid_of, state, start, label)
         for p in range(flight.shape[0]):
             if flight[p, SOONEST] < math.inf:
                 _meet_next(ways, p, contacts, state, start)
+
+
+@inner_kernel
+def _turn_bodies(
+    ways: Ways, colliders: Colliders, solid_of: Slots, state: State, start: FloatRows, label: Slots
+) -> None:  # fmt: skip
+    # Lead what is followed to where its body first meets something; what is behind in a solid meets nothing later on.
+    flight = ways.flight
+    for p in range(flight.shape[0]):
+        flight[label[p], BODY] = min(flight[label[p], BODY], flight[p, SOONEST])
+    for p in range(flight.shape[0]):
+        late, vx, vy, shape = flight[label[p], BODY], start[p, 0], start[p, 1], colliders.shape[p]
+        if not late < math.inf or state.inverse_mass[p] == 0.0:
+            continue
+        if is_followed(ways, p):
+            go(ways, p, flight[p, X] + late * vx, flight[p, Y] + late * vy, UNTIL_MET * late, False)
+        further = (flight[p, SOONEST] - late) * math.sqrt(vx * vx + vy * vy)
+        if shape >= 0 and solid_of[shape] >= 0 and further > state.radius[p]:
+            flight[p, SOONEST], flight[p, VX], flight[p, VY] = math.inf, 0.0, 0.0
 
 
 @inner_kernel
@@ -237,7 +255,7 @@ def _meet_next(ways: Ways, p: int, contacts: Contacts, state: State, start: Floa
         flight[p, X + axis] += (late - flight[p, AT]) * flight[p, VX + axis]
     flight[p, AT], flight[p, SOONEST] = late, math.inf
     if is_followed(ways, p):
-        go(ways, p, flight[p, X], flight[p, Y], late, True)
+        go(ways, p, flight[p, X], flight[p, Y], UNTIL_MET * late, True)
     for end in range(TOUCHING):
         q, weight = weight_of(contacts, c, end)
         if q == p and weight != 0.0:

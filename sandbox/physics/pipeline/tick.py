@@ -111,7 +111,10 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
         store_joint_impulses(joints, state, h)
         if touches:
             if follows:
-                follow_hits(ways, collisions.contacts, collisions.counts[COUPLED], state, start, world.body_label, h)
+                follow_hits(
+                    ways, collisions.contacts, collisions.counts[COUPLED], collisions.colliders,
+                    collisions.outline.solid_of, state, start, world.body_label, h,
+                )  # fmt: skip
                 note_velocities(ways, state.velocity)
             store_impulses(collisions)
             clamp(state, collisions, h)
