@@ -63,6 +63,19 @@ def followed(zones: Zones, rows: SlotRows, particle_count: int) -> Ways:
     )  # fmt: skip
 
 
+def rows_of(ways: Ways) -> SlotRows:
+    """The particle and the zone of each row (k, 2)."""
+    return np.stack((ways.particle, ways.zone), axis=1)
+
+
+def of_present(ways: Ways, particle_count: int) -> Ways:
+    """Ways of those particles alone that are there: what joined the world may be undone while it is followed."""
+    if len(ways.first) <= particle_count:
+        return ways
+    rows = rows_of(ways)
+    return followed(ways.zones, rows[ways.particle < particle_count], particle_count)
+
+
 @inlined_kernel
 def is_followed(ways: Ways, p: int) -> bool:
     """Whether any row is of a particle, which may have joined the world while it ran."""
@@ -81,6 +94,15 @@ def begin_ways(ways: Ways, state: State, rate: int) -> None:
         for axis in range(2):
             ways.place[k, axis] = probe[k, axis] if k < probe.shape[0] else state.position[p, axis]
         _go(ways, k, state.position[p, 0], state.position[p, 1], 0.0)
+
+
+@inner_kernel
+def store_places(ways: Ways, state: State) -> None:
+    """Store where the ways of rules have ended, at the end of a tick."""
+    probe = state.probe_position
+    for k in range(min(probe.shape[0], ways.particle.shape[0])):
+        for axis in range(2):
+            probe[k, axis] = state.position[ways.particle[k], axis]
 
 
 @inner_kernel

@@ -19,8 +19,8 @@ from sandbox.level.rules.rule import ActionDef
 from sandbox.level.things.contacts import ContactListener
 from sandbox.level.things.names import ThingNames, thing_of, thing_of_spring
 from sandbox.physics.analysis.query import shown_particles
-from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.ways import followed
+from sandbox.physics.arrays import Floats, Slots, empty
+from sandbox.physics.ways import Ways, followed, rows_of
 from sandbox.session.commands.records import ScriptLine, script_of
 from sandbox.session.log import TickEvents
 from sandbox.session.outcome import outcome
@@ -163,6 +163,7 @@ class ZoneWays:
     def __init__(self, zones: Sequence[ZoneDef]) -> None:
         self._zones = zones
         self._followed: tuple[LevelWorld, int] | None = None
+        self._ways = empty(Ways)
         # The first row of each thing and zone, and their ids.
         self._first: Slots = np.zeros(0, np.int64)
         self._pairs: list[tuple[str, str]] = []
@@ -170,7 +171,7 @@ class ZoneWays:
     def passed(self, world: LevelWorld) -> set[tuple[str, str]]:
         """Things with the zones that all their particles were in at once at some time of the last tick."""
         found = set()
-        if self._followed is not None and self._followed[0] is world and self._pairs:
+        if self._pairs and world.ways is self._ways:
             span = world.ways.span[len(world.probe_position) :]
             first, last = np.maximum.reduceat(span[:, 0], self._first), np.minimum.reduceat(span[:, 1], self._first)
             found = {self._pairs[k] for k in np.flatnonzero(first <= last).tolist()}
@@ -188,9 +189,9 @@ class ZoneWays:
         rows = [np.stack((slots, np.full(len(slots), k)), axis=1) for k in range(len(self._zones))]
         self._first = np.concatenate([starts + k * len(slots) for k in range(len(self._zones))])
         self._pairs = [(things.names[thing], zone.id) for zone in self._zones for thing in present.tolist()]
-        ways, rules = world.ways, len(world.probe_position)
-        of_rules = np.stack((ways.particle[:rules], ways.zone[:rules]), axis=1)
-        world.ways = followed(zones_of(self._zones), np.concatenate([of_rules, *rows]), world.particle_count)
+        of_rules = rows_of(world.ways)[: len(world.probe_position)]
+        self._ways = followed(zones_of(self._zones), np.concatenate([of_rules, *rows]), world.particle_count)
+        world.ways = self._ways
 
 
 def things_inside(world: LevelWorld, zones: Iterable[ZoneDef]) -> set[tuple[str, str]]:

@@ -7,6 +7,7 @@ import pytest
 
 from sandbox import Session
 from sandbox.bodies import parse_level
+from sandbox.commands import AddParticle
 from sandbox.level.document.model import ZoneDef
 from sandbox.level.plan.rules import zones_of
 from sandbox.physics.snapshot import hash_by_array
@@ -204,3 +205,18 @@ def test_who_watches_a_run_changes_nothing_of_it():
     alone, watched = thrown(level, 60), Session(level)
     watched_event_log(watched, 60)
     assert hash_by_array(alone.world) == hash_by_array(watched.world)
+
+
+def test_what_joined_while_it_was_followed_may_be_undone():
+    zone = [{"id": "target", "box": [0.5, -1, 1, 1]}]
+    run = Session(level_of(zone, [crossing("target", particle="ball")], terrain=[WALL], particles=[ball(-6.0, 30.0)]))
+    watched_event_log(run, 2)
+    count, gesture = run.world.particle_count, run.new_gesture()
+    run.submit(AddParticle((0.0, 3.0)), gesture)
+    watched_event_log(run, 4)
+    assert run.world.particle_count > count
+    run.undo()
+    run.advance()
+    assert run.world.particle_count == count
+    told = watched_event_log(run, 20)
+    assert run.world.counter[0] == 1.0 and "ball entered target" in {each.text for each in told}

@@ -32,6 +32,7 @@ from sandbox.physics.solvers.direct.layout import tuning
 from sandbox.physics.solvers.direct.system import WAYS
 from sandbox.physics.state import RANGES, good_of, state_of
 from sandbox.physics.water.displacers import Water
+from sandbox.physics.ways import of_present
 from sandbox.physics.world import World, areas_of
 
 
@@ -82,6 +83,7 @@ class BlockOwner:
             self._lay_out_hands()
 
     def _follow_topology(self, world: World) -> None:
+        world.ways = of_present(world.ways, world.particle_count)
         self._topology, self._hands = world.topology_version, world.hand_version
         constant = world.actuators, world.limits, world.spring_count
         if constant != self._constant:

@@ -8,6 +8,7 @@ from sandbox.physics.pipeline.block import TICK, WorldBlock
 from sandbox.physics.pipeline.collide import KEPT
 from sandbox.physics.rules import ALL, ANY, NOBODY, NOT, TOUCHES, Terms, Things, measure
 from sandbox.physics.settings import TICK_RATE
+from sandbox.physics.ways import store_places
 
 
 @kernel
@@ -42,9 +43,7 @@ def judge(pointer: Bundle[WorldBlock]) -> int:
         state.rule_fired[r] += 1
         state.rule_due[r] = True
         fired += 1
-    for k in range(state.probe_position.shape[0]):
-        for axis in range(2):
-            state.probe_position[k, axis] = state.position[world.ways.particle[k], axis]
+    store_places(world.ways, state)
     return fired
 
 
