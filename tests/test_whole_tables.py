@@ -39,7 +39,7 @@ from sandbox.level.rules.player_limits import DEEDS
 from sandbox.level.rules.rule import ASKS, DOES, GROUPS, UNASKED, Sound
 from sandbox.page import start
 from sandbox.page.bundle import WEB
-from sandbox.physics import constraints, marks, settings
+from sandbox.physics import constraints, marks, settings, zones
 from sandbox.physics import rules as rule_codes
 from sandbox.physics.analysis.query import row_names, slot_name
 from sandbox.physics.commands import command, command_table
@@ -87,7 +87,7 @@ CODES = {
     "laws": code_names(marks, "LAW_NISSEN"),
     "edges": code_names(marks, "NO_EDGE"),
     "codes of solvers": code_names(settings, "SINGLE_PASS"),
-    "kinds of zones": code_names(rule_codes, "BOX"),
+    "kinds of zones": code_names(zones, "BOX"),
     "codes of commands": code_names(command, "GRAB", "SET_GRAVITY", "SET_SOLVER"),
     "kinds of terms": code_names(rule_codes, "TOUCHES", "SETTLED"),
 }
@@ -102,8 +102,8 @@ REST = {
     "sandbox.physics.pipeline.derive.derive_hands: solver": {"ITERATIVE"},
     "sandbox.physics.pipeline.derive._lay_out_solver: solver": {"SINGLE_PASS"},
     "sandbox.physics.pipeline.tick._solve: solver": {"DIRECT"},
-    "sandbox.physics.rules.depth_inside: kind": {"POLYGON"},
-    "sandbox.physics.rules.meets_zone: kind": {"POLYGON"},
+    "sandbox.physics.zones.depth_inside: kind": {"POLYGON"},
+    "sandbox.physics.zones.span_inside: kind": {"POLYGON"},
     "sandbox.physics.rules.measure: kind": OF_CENTRE | OF_TERMS | {"TOUCHES"},
     "sandbox.physics.rules._of_centre: kind": RULES - OF_CENTRE,
     "sandbox.physics.pipeline.rule_evaluation._holds_of_members: terms.kind[t]": RULES - {"ALL", "ANY"},

@@ -1,4 +1,4 @@
-"""Rules: what a level asks at the end of each tick, its zones, and how the value of what is asked is measured.
+"""Rules: what a level asks at the end of each tick, and how the value of what is asked is measured.
 
 What a run makes of the rules is state (state.py).
 """
@@ -7,11 +7,12 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
-from sandbox.physics.geometry.segment import difference, segments_cross, squared_distance
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import State
+from sandbox.physics.ways import Ways
+from sandbox.physics.zones import Zones, depth_inside, may_be_inside
 
-BOX, CIRCLE, POLYGON = range(3)
 # What a term asks. Of those from CENTRE_X on a value lies between bounds; of the last, terms are asked.
 TOUCHES, CROSSES, CENTRE_X, CENTRE_Y, SPEED, DISTANCE, INSIDE, FASTEST, STRAIN, MOTION, BROKEN, UNSOUND = range(12)
 SETTLED, COUNTER, TIME, KEY, ALL, ANY, NOT = range(12, 19)
@@ -23,23 +24,14 @@ STILL = 0.05
 _LONGEST_STILL = 1_000_000_000
 
 
-class Zones(NamedTuple):
-    """The zones of a level, by their order in the file."""
-
-    kind: Slots
-    shape: FloatRows  # [m] (z, 4): left, bottom, right, top; of a circle x, y, radius, 0
-    first: Slots  # (z + 1,): the first corner of each
-    corner: FloatRows  # [m] of all polygons
-
-
 class Terms(NamedTuple):
     """The questions of rules, each below the one that asks it; those of TOUCHES come first."""
 
     kind: Slots
     first: Slots  # first, last: the slots of what it is about; of ALL, ANY and NOT the members
     last: Slots
-    zone: Slots  # of INSIDE and CROSSES; of TOUCHES the first thing
-    other: Slots  # the second thing or NOBODY, slot, counter, key, first probe or first of `still_ticks`
+    zone: Slots  # of INSIDE; of TOUCHES the first thing
+    other: Slots  # the second thing or NOBODY, slot, counter, key, first row of ways or first of `still_ticks`
     low: Floats  # low, high: the bounds, both included
     high: Floats
     slot: Slots  # particles, or springs of STRAIN and BROKEN
@@ -65,11 +57,10 @@ class Rules(NamedTuple):
     term: Slots  # what each asks
     delay: Slots  # [ticks] that it must have held before
     once: Flags
-    probe: Slots  # particles whose way is followed
 
 
 @inner_kernel
-def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
+def measure(rules: Rules, t: int, state: State, ways: Ways, tick: int, rate: int) -> float:
     """The value of a term that bounds are compared with: 1 or 0 where there is none, infinite of nothing."""
     terms = rules.terms
     kind, other = terms.kind[t], terms.other[t]
@@ -82,7 +73,7 @@ def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
     if kind == SETTLED:
         return _still_ticks(terms, t, state) / rate
     if kind == CROSSES:
-        return 1.0 if _crosses(rules, t, state) else 0.0
+        return 1.0 if _crosses(rules, t, state, ways) else 0.0
     if kind == INSIDE:
         return _depth(rules, t, state)
     if kind == DISTANCE:
@@ -99,55 +90,6 @@ def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
     if kind == MOTION:
         return _motion(terms, t, state)
     return _of_centre(terms, t, state)
-
-
-@inner_kernel
-def depth_inside(zones: Zones, z: int, x: float, y: float) -> float:
-    """How far inside a zone a place is [m]; below 0: how far outside, of a box at least."""
-    kind, shape = zones.kind[z], zones.shape
-    if kind == BOX:
-        return min(min(x - shape[z, 0], shape[z, 2] - x), min(y - shape[z, 1], shape[z, 3] - y))
-    if kind == CIRCLE:
-        dx, dy = x - shape[z, 0], y - shape[z, 1]
-        return shape[z, 2] - math.sqrt(dx * dx + dy * dy)
-    corner, first, last = zones.corner, zones.first[z], zones.first[z + 1]
-    is_inside, nearest, before = False, math.inf, last - 1
-    for c in range(first, last):
-        ax, ay, bx, by = corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]
-        if (ay > y) != (by > y) and x - ax < (bx - ax) * (y - ay) / (by - ay):
-            is_inside = not is_inside
-        nearest = min(nearest, squared_distance(x, y, ax, ay, bx, by))
-        before = c
-    return math.sqrt(nearest) if is_inside else -math.sqrt(nearest)
-
-
-@inner_kernel
-def _may_be_inside(zones: Zones, z: int, x: float, y: float) -> bool:
-    """Whether a place lies in the box around a zone that is no circle."""
-    shape = zones.shape
-    return zones.kind[z] == CIRCLE or (shape[z, 0] <= x <= shape[z, 2] and shape[z, 1] <= y <= shape[z, 3])
-
-
-@inner_kernel
-def meets_zone(zones: Zones, z: int, ax: float, ay: float, bx: float, by: float) -> bool:
-    """Whether the way from a to b begins in a zone, ends in it, or passes through."""
-    if depth_inside(zones, z, ax, ay) >= 0.0 or depth_inside(zones, z, bx, by) >= 0.0:
-        return True
-    kind, shape, corner = zones.kind[z], zones.shape, zones.corner
-    if kind == CIRCLE:
-        return squared_distance(shape[z, 0], shape[z, 1], ax, ay, bx, by) <= shape[z, 2] * shape[z, 2]
-    if kind == BOX:
-        left, bottom, right, top = shape[z, 0], shape[z, 1], shape[z, 2], shape[z, 3]
-        # What crosses a box crosses one of its diagonals.
-        rises = segments_cross(ax, ay, bx, by, left, bottom, right, top)
-        return rises or segments_cross(ax, ay, bx, by, left, top, right, bottom)
-    first, last = zones.first[z], zones.first[z + 1]
-    before = last - 1
-    for c in range(first, last):
-        if segments_cross(ax, ay, bx, by, corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]):
-            return True
-        before = c
-    return False
 
 
 @inner_kernel
@@ -181,7 +123,7 @@ def _depth(rules: Rules, t: int, state: State) -> float:
             continue
         x, y = state.position[p, 0], state.position[p, 1]
         # One that lies too far out settles it; the value is no more than a bound then.
-        if low >= 0.0 and not _may_be_inside(zones, z, x, y):
+        if low >= 0.0 and not may_be_inside(zones, z, x, y):
             return -math.inf
         least = min(least, depth_inside(zones, z, x, y))
         if least < low:
@@ -190,12 +132,12 @@ def _depth(rules: Rules, t: int, state: State) -> float:
 
 
 @inner_kernel
-def _crosses(rules: Rules, t: int, state: State) -> bool:
-    """Whether the way of a particle in this tick, as a straight line, meets the zone."""
-    terms, z, probe, now = rules.terms, rules.terms.zone[t], state.probe_position, state.position
+def _crosses(rules: Rules, t: int, state: State, ways: Ways) -> bool:
+    """Whether the way of a particle in this tick meets the zone."""
+    terms, span = rules.terms, ways.span
     for at in range(terms.first[t], terms.last[t]):
-        p, k = terms.slot[at], terms.other[t] + at - terms.first[t]
-        if state.particle_active[p] and meets_zone(rules.zones, z, probe[k, 0], probe[k, 1], now[p, 0], now[p, 1]):
+        k = terms.other[t] + at - terms.first[t]
+        if state.particle_active[terms.slot[at]] and span[k, 0] <= span[k, 1]:
             return True
     return False
 

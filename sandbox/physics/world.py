@@ -32,6 +32,7 @@ from sandbox.physics.softness.kernels.firm import FormTable
 from sandbox.physics.state import ABSURD, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS
+from sandbox.physics.ways import Ways
 
 Derived = TypeVar("Derived")
 Point = tuple[float, float]
@@ -43,7 +44,7 @@ HAND_STRENGTH = 100.0
 
 # Attributes that another value of counts as a change of topology. From a step's contacts nothing is derived.
 _WATCHED = frozenset(
-    {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules", "area_constraints"}
+    {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules", "ways", "area_constraints"}
     | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
 )
 
@@ -82,6 +83,7 @@ class World(StateArrays):
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         self.rules: Rules = empty(Rules)
+        self.ways: Ways = empty(Ways)  # the first are of rules, see Family.PROBE
         # Of each row of rules: the name of the rule, the counter or the key; of probes and stills that of the rule.
         self.row_names: dict[Family, tuple[str, ...]] = dict.fromkeys(OF_RULES, ())
         self.joined: tuple[Joined, ...] = ()

@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level, ZoneDef
+from sandbox.level.plan.rules import zones_of
 from sandbox.level.rules.rule import ActionDef
 from sandbox.level.things.contacts import ContactListener
 from sandbox.level.things.names import ThingNames, thing_of, thing_of_spring
 from sandbox.physics.analysis.query import shown_particles
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import Floats, Slots, empty
+from sandbox.physics.ways import Ways, followed, rows_of
 from sandbox.session.commands.records import ScriptLine, script_of
 from sandbox.session.log import TickEvents
 from sandbox.session.outcome import outcome
@@ -97,8 +99,8 @@ class Meeting:
 class TouchWatch:
     """Told of every tick by `watch`.
 
-    touches: by the ids of both; insides: by the ids of a thing and a zone that all of it was in. unlisted: pairs that
-    there was no more room for. Its memory grows with the pairs, not with time.
+    touches: by the ids of both; insides: by the ids of a thing and a zone that all of it was in at once, if only for a
+    part of a tick. unlisted: pairs that there was no more room for. Its memory grows with the pairs, not with time.
     """
 
     def __init__(self, zones: Iterable[ZoneDef]) -> None:
@@ -107,6 +109,7 @@ class TouchWatch:
         self.unlisted = 0
         self._zones = tuple(zones)
         self._inside: set[tuple[str, str]] | None = None
+        self._ways = ZoneWays(self._zones)
         self._listener: ContactListener | None = None
 
     def following(self, states: Iterable[LevelWorld]) -> Iterator[LevelWorld]:
@@ -131,9 +134,11 @@ class TouchWatch:
         now = things_inside(world, self._zones)
         # What is there from the start has not entered.
         before = now if self._inside is None else self._inside
-        for pair in sorted(now - before):
+        # What came and went within the tick.
+        passed = self._ways.passed(world) - before - now
+        for pair in sorted((now - before) | passed):
             self._begin(self.insides, pair, world.tick)
-        for pair in sorted(before - now):
+        for pair in sorted((before - now) | passed):
             self.insides.setdefault(pair, Meeting(0, 0, 0))
             self._end(self.insides, pair, world.tick)
         self._inside = now
@@ -150,6 +155,43 @@ class TouchWatch:
     def _end(self, meetings: dict[tuple[str, str], Meeting], pair: tuple[str, str], tick: int) -> None:
         if pair in meetings:
             meetings[pair].end(tick)
+
+
+class ZoneWays:
+    """The ways of all particles of a world through the zones of its level, which its ticks follow from `passed` on."""
+
+    def __init__(self, zones: Sequence[ZoneDef]) -> None:
+        self._zones = zones
+        self._followed: tuple[LevelWorld, int] | None = None
+        self._ways = empty(Ways)
+        # The first row of each thing and zone, and their ids.
+        self._first: Slots = np.zeros(0, np.int64)
+        self._pairs: list[tuple[str, str]] = []
+
+    def passed(self, world: LevelWorld) -> set[tuple[str, str]]:
+        """Things with the zones that all their particles were in at once at some time of the last tick."""
+        found = set()
+        if self._pairs and world.ways is self._ways:
+            span = world.ways.span[len(world.probe_position) :]
+            first, last = np.maximum.reduceat(span[:, 0], self._first), np.minimum.reduceat(span[:, 1], self._first)
+            found = {self._pairs[k] for k in np.flatnonzero(first <= last).tolist()}
+        if self._followed != (world, world.topology_version):
+            self._follow(world)
+            self._followed = world, world.topology_version
+        return found
+
+    def _follow(self, world: LevelWorld) -> None:
+        things, shown = ThingNames.of(world), shown_particles(world)
+        owner = things.of_particle[shown]
+        order = np.argsort(owner, kind="stable")
+        slots, present = np.arange(world.particle_count)[shown][order], np.unique(owner)
+        starts = np.searchsorted(owner[order], present)
+        rows = [np.stack((slots, np.full(len(slots), k)), axis=1) for k in range(len(self._zones))]
+        self._first = np.concatenate([starts + k * len(slots) for k in range(len(self._zones))])
+        self._pairs = [(things.names[thing], zone.id) for zone in self._zones for thing in present.tolist()]
+        of_rules = rows_of(world.ways)[: len(world.probe_position)]
+        self._ways = followed(zones_of(self._zones), np.concatenate([of_rules, *rows]), world.particle_count)
+        world.ways = self._ways
 
 
 def things_inside(world: LevelWorld, zones: Iterable[ZoneDef]) -> set[tuple[str, str]]:

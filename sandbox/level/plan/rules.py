@@ -17,9 +17,11 @@ from sandbox.level.rules.rule import WALLS, QuestionDef, RuleDef
 from sandbox.physics import rules
 from sandbox.physics.arrays import Slots
 from sandbox.physics.commands.command_table import CODES
-from sandbox.physics.rules import BOX, CIRCLE, NOBODY, POLYGON, Rules, Terms, Things, Zones
+from sandbox.physics.rules import NOBODY, Rules, Terms, Things
 from sandbox.physics.state import Family
+from sandbox.physics.ways import followed
 from sandbox.physics.world import World, grow
+from sandbox.physics.zones import BOX, CIRCLE, POLYGON, Zones
 
 _KINDS = {
     "x": rules.CENTRE_X, "y": rules.CENTRE_Y, "speed": rules.SPEED, "distance": rules.DISTANCE,
@@ -75,8 +77,9 @@ def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     counters = level.counters
     _append(world, Family.RULE, [rule.id for rule in level.rules])
     _append(world, Family.COUNTER, [each.id for each in counters], counter=[each.start + 0.0 for each in counters])
-    places = world.position[maker.probes].reshape(-1, 2)
-    _append(world, Family.PROBE, maker.probing, probe_position=places)
+    rows = np.array(maker.probes, np.int64).reshape(-1, 2)
+    world.ways = followed(world.rules.zones, rows, world.particle_count)
+    _append(world, Family.PROBE, maker.probing, probe_position=world.position[rows[:, 0]])
     _append(world, Family.STILL, maker.settling)
     _append(world, Family.KEY, maker.keys)
 
@@ -106,7 +109,8 @@ class _Maker:
         self.keys = rule_keys(level)
         self._things = _things(level, plan)
         self._terms: list[_Term] = []
-        self.probes: list[int] = []
+        # Particles whose way is followed, and the zones that they may cross.
+        self.probes: list[tuple[int, int]] = []
         # The rule whose question is made, and that of each probe and each question whether something has settled.
         self._asking = ""
         self.probing: list[str] = []
@@ -133,11 +137,11 @@ class _Maker:
                 one, *others = (self._things[name] for name in value)
                 return _Term(rules.TOUCHES, (), one, others[0] if others else NOBODY)
             case "crosses":
-                about = self._particles(asked)
+                about, zone = self._particles(asked), self._zones.index(value)
                 first = len(self.probes)
-                self.probes += about
+                self.probes += [(slot, zone) for slot in about]
                 self.probing += [self._asking] * len(about)
-                return _Term(rules.CROSSES, about, self._zones.index(value), first, 1.0, 1.0)
+                return _Term(rules.CROSSES, about, other=first, low=1.0, high=1.0)
             case "breaks":
                 return _Term(rules.BROKEN, self._springs(value), low=1.0)
             case "counter":
@@ -221,7 +225,6 @@ class _Maker:
             _slots([place[t] for t in roots]),
             _slots(delays),
             np.array(once, np.bool_),
-            _slots(self.probes),
         )
 
     def _numbered_things(self) -> Things:

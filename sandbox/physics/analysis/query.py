@@ -164,7 +164,7 @@ def slot_name(world: World, array: str, slot: int) -> str:
         case Family.SETTING:
             return NUMBER_NAMES[slot]
         case Family.PROBE:
-            probed = world.particle_names[world.rules.probe[slot]]
+            probed = world.particle_names[world.ways.particle[slot]]
             return f'way of {probed} for rule "{world.row_names[family][slot]}"'
         case Family.STILL:
             return f'settling for rule "{world.row_names[family][slot]}"'

@@ -18,6 +18,7 @@ from sandbox.physics.solvers.single_pass import ExplicitPass
 from sandbox.physics.state import GoodValues, Ranges, State
 from sandbox.physics.untangling.triangle_clamp import WorldTriangles
 from sandbox.physics.water.displacers import Water
+from sandbox.physics.ways import Ways
 
 # Places in `plan`: the first particle and the first spring of a hand, or -1; then what topology decides: whether
 # anything can touch, whether the solver's system has Hooke springs beside it, whether there are areas of more than
@@ -60,6 +61,7 @@ class WorldBlock(NamedTuple):
     demand: Slots  # the most of each that a step has asked for (derive.py)
     tuning: Tuning  # see elimination.py
     rules: Rules
+    ways: Ways
     ranges: Ranges
     start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
     start_length: Floats  # [m] (m,): rest lengths before drives

@@ -32,6 +32,7 @@ from sandbox.physics.solvers.direct.layout import tuning
 from sandbox.physics.solvers.direct.system import WAYS
 from sandbox.physics.state import RANGES, good_of, state_of
 from sandbox.physics.water.displacers import Water
+from sandbox.physics.ways import of_present
 from sandbox.physics.world import World, areas_of
 
 
@@ -82,6 +83,7 @@ class BlockOwner:
             self._lay_out_hands()
 
     def _follow_topology(self, world: World) -> None:
+        world.ways = of_present(world.ways, world.particle_count)
         self._topology, self._hands = world.topology_version, world.hand_version
         constant = world.actuators, world.limits, world.spring_count
         if constant != self._constant:
@@ -92,7 +94,7 @@ class BlockOwner:
         water, table = with_empty(Water, pool=world.water, hull=world.hulls), world.form_table
         self.inputs = self.inputs._replace(
             state=state_of(world), good=good_of(world), areas=areas_of(world), forms=table.forms, modes=table.modes,
-            tuning=tuning(), rules=world.rules, water=water,
+            tuning=tuning(), rules=world.rules, ways=world.ways, water=water,
         )  # fmt: skip
         self.inputs.plan[GRAB_PARTICLE], self.inputs.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)

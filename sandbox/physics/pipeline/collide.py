@@ -43,6 +43,7 @@ from sandbox.physics.untangling.overlaps import (
     find_crossings,
     pair_overlaps,
 )
+from sandbox.physics.ways import Ways
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
 # crossings of outlines, pairs of shapes that overlap; coupled contacts, which a solver solves with springs; islands of
@@ -196,11 +197,11 @@ def prepare_contacts(state: State, start: FloatRows, collisions: Collisions, h: 
 
 
 @inner_kernel
-def solve_free(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
-    """Solve contacts of particles that no spring or constraint holds."""
+def solve_free(state: State, start: FloatRows, collisions: Collisions, ways: Ways, h: float) -> None:
+    """Solve contacts of particles that no spring or constraint holds, and follow those."""
     solve_free_contacts(
         collisions.contacts, collisions.islands, collisions.counts[FREE_ISLANDS], collisions.colliders, start,
-        state.velocity, state.spin, h, collisions.work,
+        state.velocity, state.spin, h, collisions.work, ways,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from sandbox.physics.pipeline.block import TICK, WorldBlock
 from sandbox.physics.pipeline.collide import KEPT
 from sandbox.physics.rules import ALL, ANY, NOBODY, NOT, TOUCHES, Terms, Things, measure
 from sandbox.physics.settings import TICK_RATE
+from sandbox.physics.ways import store_places
 
 
 @kernel
@@ -27,7 +28,7 @@ def judge(pointer: Bundle[WorldBlock]) -> int:
         if kind in (ALL, ANY, NOT):
             terms.holds[t] = _holds_of_members(terms, t)
         elif kind != TOUCHES:
-            terms.value[t] = measure(rules, t, state, tick, world.choices[TICK_RATE])
+            terms.value[t] = measure(rules, t, state, world.ways, tick, world.choices[TICK_RATE])
             # Of nothing nothing holds.
             terms.holds[t] = terms.low[t] <= terms.value[t] <= terms.high[t] and terms.value[t] < math.inf
     fired = 0
@@ -42,9 +43,7 @@ def judge(pointer: Bundle[WorldBlock]) -> int:
         state.rule_fired[r] += 1
         state.rule_due[r] = True
         fired += 1
-    for k in range(rules.probe.shape[0]):
-        for axis in range(2):
-            state.probe_position[k, axis] = state.position[rules.probe[k], axis]
+    store_places(world.ways, state)
     return fired
 
 

@@ -66,6 +66,7 @@ from sandbox.physics.substeps import choose_substeps, drag_factor_of, kept_by, l
 from sandbox.physics.untangling.triangle_clamp import clamp_world
 from sandbox.physics.water.bound import bound_lift
 from sandbox.physics.water.push import give_mass_back, push_by_water, slow_spins
+from sandbox.physics.ways import begin_step, begin_ways, end_step, follow_hits, note_velocities, take_back_cut
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
 # where it was, once there is more room. Something that it has moved is not sound; springs broke.
@@ -78,6 +79,7 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
     world = unpack(pointer)
     state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
     progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
+    ways, follows = world.ways, world.ways.particle.shape[0] > 0
     if progress[COUNT] == 0:
         if progress[CHECKED] == 0 and _contain(world, UNSOUND, progress[:0]) > 0:
             return UNSOUND
@@ -102,16 +104,26 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
             return NO_ROOM
         # Behind the last step that is made again with more room, where velocities alone are taken back.
         slow_spins(world.water, state, h)
+        if follows:
+            begin_step(ways, 1.0 * progress[DONE] / progress[COUNT])
         if touches:
             separate_overlaps(state, start, collisions)
             prepare_contacts(state, start, collisions, h)
-            solve_free(state, start, collisions, h)
+            solve_free(state, start, collisions, world.ways, h)
         _solve(world, inputs, has_joints, h)
         _begin_flight(world, touches, h)
         store_joint_impulses(joints, state, h)
         if touches:
+            if follows:
+                follow_hits(
+                    ways, collisions.contacts, collisions.counts[COUPLED], collisions.colliders,
+                    collisions.outline.solid_of, state, start, world.body_label, h,
+                )  # fmt: skip
+                note_velocities(ways, state.velocity)
             store_impulses(collisions)
             clamp(state, collisions, h)
+            if follows:
+                take_back_cut(ways, state.velocity)
         if world.triangles.of_world.constraint.shape[0] > 0:
             clamp_world(world.triangles, solver == DIRECT, h)
         if world.water.pool.shape[0] > 0:
@@ -120,6 +132,8 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
         integrate_positions(state, h)
         if solver == DIRECT:
             end_turns(world.system, state, h)
+        if follows:
+            end_step(ways, state.position, h)
         progress[DONE] += 1
     _end_tick(world)
     if _contain(world, LOST, progress[:0]) > 0:
@@ -197,6 +211,8 @@ def _begin_tick(world: WorldBlock) -> None:
     kept = world.collisions.kept
     for c in range(world.collisions.counts[KEPT]):
         kept.impact[c] = 0.0
+    if world.ways.particle.shape[0] > 0:
+        begin_ways(world.ways, state, choices[TICK_RATE])
 
 
 @inner_kernel

@@ -18,9 +18,9 @@ than its share.
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP_SHIFT
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import DISC, KINDS, TERRAIN, TIP_SHIFT
 from sandbox.physics.settings import GRAVITY_X, GRAVITY_Y
 from sandbox.physics.state import State
 from sandbox.physics.water.displacers import (

@@ -63,7 +63,9 @@ from sandbox.physics.solvers.contact.free_constraints import (
     small_steps,
 )
 from sandbox.physics.solvers.contact.free_impacts import collide_fast
+from sandbox.physics.solvers.contact.free_ways import lead
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
+from sandbox.physics.ways import Ways, is_followed
 
 # In place of a number of small steps.
 SOLVED = 0
@@ -72,9 +74,9 @@ SOLVED = 0
 @inner_kernel
 def solve_free_contacts(
     contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows,
-    velocity: FloatRows, spin: Floats, h: float, work: FreeContactScratch,
+    velocity: FloatRows, spin: Floats, h: float, work: FreeContactScratch, ways: Ways,
 ) -> None:  # fmt: skip
-    """Solve the free contacts, as sorted, over a step of h [s]; work.ahead goes with velocity and spin.
+    """Solve the free contacts, as sorted, over a step of h [s]; work.ahead and ways go with velocity and spin.
 
     start [m/s] (n, 2): the velocities before anything acted in this step.
     """
@@ -91,7 +93,7 @@ def solve_free_contacts(
     for g in range(island_count):
         count = work.steps[g]
         if count != SOLVED:
-            _solve_beside(contacts, islands, colliders, _put_beside(work, g, island_count), count, h, work)
+            _solve_beside(contacts, islands, colliders, _put_beside(work, g, island_count), count, h, work, ways)
     for k in range(work.begin[island_count]):
         if work.weight[k] > 0.0:
             p = work.particle[k]
@@ -110,13 +112,14 @@ def _solve_beside(
     count: int,
     h: float,
     work: FreeContactScratch,
+    ways: Ways,
 ) -> None:
     # Solve islands side by side, in so many small steps.
     rows = fill_constraints(contacts, islands, colliders, besides, work)
     for b in range(besides):
         g = work.beside[b]
         work.allowed[g] = _energy(work, work.begin[g], work.begin[g + 1], 1.0)
-    _take_small_steps(work, rows, besides, count, h)
+    _take_small_steps(work, rows, besides, count, h, ways, colliders.position)
     for b in range(besides):
         g = work.beside[b]
         _restrain(work, work.begin[g], work.begin[g + 1], colliders, work.allowed[g])
@@ -143,7 +146,9 @@ def _energy(work: FreeContactScratch, begin: int, end: int, gained: float) -> fl
 
 
 @inner_kernel
-def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: int, h: float) -> None:
+def _take_small_steps(
+    work: FreeContactScratch, rows: int, besides: int, count: int, h: float, ways: Ways, position: FloatRows
+) -> None:  # fmt: skip
     # All small steps, so many, of islands side by side, whose contacts are the first rows.
     small = h / count
     scale = 1.0 / count
@@ -154,7 +159,8 @@ def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: 
         row[i, ACROSS] *= scale
         _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
     look(work, 0, rows)
-    for _ in range(count):
+    for done in range(count):
+        late = small * done
         for b in range(besides):
             # What forces add in a small step, and what the impulses of the last one do.
             begin = work.begin[work.beside[b]]
@@ -171,7 +177,7 @@ def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: 
                     motion[k, PUSHED_SURFACE] = 0.0
                     work.turned[k] = 0.0
         hits = _iterate(work, rows, small, True, True)
-        if hits > 0 and not collide_fast(work, hits, rows, besides, small):
+        if hits > 0 and not collide_fast(work, hits, rows, besides, small, late, ways, position):
             look(work, 0, rows)
             _iterate(work, rows, small, True, False)
         for b in range(besides):
@@ -180,6 +186,8 @@ def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: 
             for k in range(begin, end):
                 work.motion[k, WX] += small * work.motion[k, VX]
                 work.motion[k, WY] += small * work.motion[k, VY]
+                if work.weight[k] > 0.0 and is_followed(ways, work.particle[k]):
+                    lead(work, k, small + late, ways, position)
         look(work, 0, rows)
         _iterate(work, rows, small, False, True)
 

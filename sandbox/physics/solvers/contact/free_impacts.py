@@ -14,6 +14,7 @@ cut short, and friction at several places, may not end there; they are scaled ba
 
 import math
 
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.collision.surfaces import SLOWEST_PASSED, bounce_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
@@ -44,6 +45,8 @@ from sandbox.physics.solvers.contact.free_constraints import (
     meet,
     slip,
 )
+from sandbox.physics.solvers.contact.free_ways import follow_pass
+from sandbox.physics.ways import Ways
 
 # Passes of a small step at most; a row of n balls takes n - 1.
 PASSES = 64
@@ -75,8 +78,11 @@ ALIKE = 1e-12
 
 
 @inner_kernel
-def collide_fast(work: FreeContactScratch, hits: int, rows: int, besides: int, small: float) -> bool:
-    """Carry out the fast impacts of this small step, and those that they cause; True: all are done."""
+def collide_fast(
+    work: FreeContactScratch, hits: int, rows: int, besides: int, small: float, late: float, ways: Ways,
+    position: FloatRows,
+) -> bool:  # fmt: skip
+    """Carry out the fast impacts of this small step, so late [s], and those that they cause; True: all are done."""
     for b in range(besides):
         g = work.beside[b]
         for k in range(work.begin[g], work.begin[g + 1]):
@@ -93,6 +99,8 @@ def collide_fast(work: FreeContactScratch, hits: int, rows: int, besides: int, s
             i = work.hit[k]
             work.target[k] = _leaves_at(work, i, approach(work, i), work.met[k], small)
         remaining -= solve_pass(work, hits, remaining) + rows // LOOKS
+        if ways.particle.shape[0] > 0:
+            follow_pass(work, hits, small, late, ways, position)
         # What a pass has pushed, and when.
         for k in range(hits):
             i = work.hit[k]
