@@ -6,6 +6,7 @@ import numpy as np
 
 from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.arena import FIRST_ARENA
+from sandbox.physics.keeping.arguments import of_kind
 from sandbox.physics.pipeline.block import BROKEN, CHECKED
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.rule_evaluation import judge
@@ -25,6 +26,8 @@ def precompute(world: World) -> None:
 
 def step(world: World) -> None:
     """Advance the world by one tick of 1 / tick_rate seconds."""
+    if not isinstance(world, World):
+        of_kind("world", world, World)
     if len(world.broken):
         world.broken = world.broken[:0]
     block = block_of(world)

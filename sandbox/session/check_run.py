@@ -14,6 +14,7 @@ from sandbox.level.plan.actuators import driving_keys
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.geometry.elementary import sum_in_order
+from sandbox.physics.keeping.arguments import of_kind
 from sandbox.physics.world import World
 from sandbox.session.commands import SetDrive
 from sandbox.session.session import Session
@@ -22,7 +23,7 @@ from sandbox.session.summary import STRAIN_WINDOW, particle_metric, strain_sampl
 
 def run_checks(level: Level) -> list[CheckResult]:
     """Run the level by itself as long as its checks ask for, and judge; in the order of the file."""
-    results = dict(found for found in checks_as_they_end(level) if found is not None)
+    results = dict(found for found in checks_as_they_end(of_kind("level", level, Level)) if found is not None)
     return [results[number] for number in sorted(results)]
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sandbox import Session, state_hash
+from sandbox import Session, build_world, contacts, outlines, run_checks, state_hash, step
 from sandbox.session.commands import CommandError, Pin
 from tests.support.bad_values import BAD, RAISED, bad_calls, called, public_methods
 from tests.support.rope_level import rope_level
@@ -80,3 +80,13 @@ def test_a_session_of_nothing_is_refused_by_name(argument):
             Session(**given).advance()
         except RAISED as error:
             assert argument in str(error).lower(), f"{argument} = {value!r:.60}: {error!r}"
+
+
+@pytest.mark.parametrize(
+    ("function", "argument"),
+    [(step, "world"), (contacts, "world"), (outlines, "world"), (build_world, "level"), (run_checks, "level")],
+)
+def test_functions_of_a_world_or_a_level_say_what_is_none(function, argument):
+    for value in BAD:
+        with pytest.raises(ValueError, match=f"^{argument} "):
+            function(value)

@@ -16,6 +16,7 @@ from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.rules import add_rules
 from sandbox.level.plan.surfaces import hulls_of, surface_of, surfaces_of, terrain_of, water_of
 from sandbox.physics.arrays import Slots
+from sandbox.physics.keeping.arguments import of_kind
 from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.marks import NO_EDGE
 from sandbox.physics.settings import WorldSettings
@@ -61,7 +62,7 @@ def build_world(level: Level) -> LevelWorld:
     Materials: "default" first, then the level's in file order. Raises LevelError for a level that breaks a limit or
     names something that does not exist.
     """
-    plan = check_level(level, f'level "{level.name}"')
+    plan = check_level(of_kind("level", level, Level), f'level "{level.name}"')
     materials = {DEFAULT_MATERIAL: NissenMaterial(), **level.materials}
     world = LevelWorld(level)
     stays = plan.first_of_weld == np.arange(plan.layout.particle_count)

@@ -10,6 +10,7 @@ from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Slots
+from sandbox.physics.keeping.arguments import of_kind
 from sandbox.physics.marks import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
 
 Point = tuple[float, float]
@@ -54,7 +55,7 @@ def contacts(world: LevelWorld) -> list[Contact]:
 
     What rules call `touches`. It reads the contacts that the tick leaves, and costs nothing where nobody asks.
     """
-    return list(_contacts(world, None))
+    return list(_contacts(of_kind("world", world, LevelWorld), None))
 
 
 def touching_pairs(world: LevelWorld) -> set[Pair]:

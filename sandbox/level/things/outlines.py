@@ -11,6 +11,7 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.geometry.segment import signed_area
+from sandbox.physics.keeping.arguments import of_kind
 from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 # The colour of terrain and walls.
@@ -42,7 +43,7 @@ def outlines(world: LevelWorld) -> list[ThingOutline]:
     discs, by `position` and `radius`. Nor have bodies whose springs branch without a rim, such as a truss: draw their
     springs. In a level where nothing touches, pieces keep the rim that is left of the whole.
     """
-    made = world.derived(_rims, of_hands=False)
+    made = of_kind("world", world, LevelWorld).derived(_rims, of_hands=False)
     names, moved = ThingNames.of(world).names, []
     for rim in made.bodies:
         points = world.position[rim.particles]
