@@ -99,9 +99,9 @@ def test_a_broken_rope_hangs(solver):
     world.mass[6] = 5.0
     world.change("inverse_mass", 0.2, 6)
     # The link above the heavy particle alone is weak.
+    world.material_names = ("strong", "weak")
     world.change("material", 0)
     world.change("material", 1, 5)
-    world.material_names = ("strong", "weak")
     world.limits = StrainLimits(np.array([NEVER, WEAK_LINK[solver]]), *np.full((2, 2), NEVER), np.zeros(2))
     run(world, 600)
     assert np.flatnonzero(~world.spring_active).tolist() == [5]
