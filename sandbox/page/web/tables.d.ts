@@ -24,6 +24,7 @@ export interface StateArrays {
   slow_change: Float64Array;
   unmoved: Uint8Array;
   untouchable: Uint8Array;
+  unreturnable: Float64Array;
   particle_a: Int32Array;
   particle_b: Int32Array;
   rest_length: Float64Array;
