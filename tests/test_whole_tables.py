@@ -96,6 +96,10 @@ OF_CENTRE = {"CENTRE_X", "CENTRE_Y", "SPEED"}
 OF_TERMS = {"ALL", "ANY", "NOT"}
 # What a table or a chain does not name of its set, one by one: it was looked at what these get there.
 REST = {
+    # As many rows as there can be particles.
+    "sandbox.session.replay.format.MOST_ROWS": {
+        Family.ACTUATOR, Family.COUNTER, Family.DEED, Family.KEY, Family.PROBE, Family.RULE, Family.SETTING, Family.STILL,
+    },
     # They go on: who steps has nothing to answer.
     "sandbox.physics.step.step: code": {"FINISHED"},
     # Kernels do not raise; what is set is in range (settings.py).

@@ -1,5 +1,7 @@
 """What play says of itself: breaks in plain words, figures of the loop apart, one material at first."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -71,11 +73,11 @@ def test_sliders_begin_on_the_material_of_the_most_springs_and_all_is_a_choice_t
     assert panel.menu.chosen == "steel" and ALL_MATERIALS in panel.menu.words
     rubber = driver.world.material == list(driver.world.material_names).index("rubber")
     before = driver.world.stiffness.copy()
-    panel._set(0.2, True)
+    panel.edit("Cs", partial(panel._set, "stiffness", value=0.2))
     driver.frames(1)
     assert (driver.world.stiffness[rubber] == before[rubber]).all() and not any("Ctrl+Z" in t for t in driver.notices)
     panel.choose_material(None)
-    panel._set(0.1, True)
+    panel.edit("Cs", partial(panel._set, "stiffness", value=0.1))
     driver.frames(1)
     shown = driver.world.spring_active & (driver.world.material >= 0)
     assert (driver.world.stiffness[shown] == 0.1).all()

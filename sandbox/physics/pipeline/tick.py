@@ -114,16 +114,7 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
         _begin_flight(world, touches, h)
         store_joint_impulses(joints, state, h)
         if touches:
-            if follows:
-                follow_hits(
-                    ways, collisions.contacts, collisions.counts[COUPLED], collisions.colliders,
-                    collisions.outline.solid_of, state, start, world.body_label, h,
-                )  # fmt: skip
-                note_velocities(ways, state.velocity)
-            store_impulses(collisions)
-            clamp(state, collisions, h)
-            if follows:
-                take_back_cut(ways, state.velocity)
+            _end_contacts(world, follows, h)
         if world.triangles.of_world.constraint.shape[0] > 0:
             clamp_world(world.triangles, solver == DIRECT, h)
         if world.water.pool.shape[0] > 0:
@@ -140,6 +131,22 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
         return LOST
     keep_motion(state, world.good)
     return BROKE if _find_broken(world) > 0 else FINISHED
+
+
+@inner_kernel
+def _end_contacts(world: WorldBlock, follows: bool, h: float) -> None:
+    # Store what contacts did, and cut what would go through terrain; ways follow both.
+    state, collisions = world.state, world.collisions
+    if follows:
+        follow_hits(
+            world.ways, collisions.contacts, collisions.counts[COUPLED], collisions.colliders,
+            collisions.outline.solid_of, state, world.start, world.body_label, h,
+        )  # fmt: skip
+        note_velocities(world.ways, state.velocity)
+    store_impulses(collisions)
+    clamp(state, collisions, h)
+    if follows:
+        take_back_cut(world.ways, state.velocity)
 
 
 @kernel
