@@ -98,7 +98,8 @@ OF_TERMS = {"ALL", "ANY", "NOT"}
 REST = {
     # As many rows as there can be particles.
     "sandbox.session.replay.format.MOST_ROWS": {
-        Family.ACTUATOR, Family.COUNTER, Family.DEED, Family.KEY, Family.PROBE, Family.RULE, Family.SETTING, Family.STILL,
+        Family.ACTUATOR, Family.COUNTER, Family.DEED, Family.KEY, Family.PROBE, Family.RULE, Family.SETTING,
+        Family.STILL,
     },
     # They go on: who steps has nothing to answer.
     "sandbox.physics.step.step: code": {"FINISHED"},
