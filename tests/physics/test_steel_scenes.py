@@ -14,7 +14,7 @@ from tests.support.wholes import some_and_whole
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
 
 SECONDS = 3.0
-SEEDS = some_and_whole(range(40), range(500))
+SEEDS = some_and_whole(range(40), range(120))
 # Rounding, in shares of sum m |v| and of sum m |v| r.
 ROUNDING = 1e-8
 # What a tick of 1/60 s and shorter may take or give of what moves within, and all ticks together may give.
