@@ -9,7 +9,6 @@ from tests.determinism.matrix import outcome
 from tests.determinism.twins import compare
 from tests.support.wants import needs
 
-
 # They make whole numbers of what may be beyond 2^63 here; places, spins and spacings of a world never are.
 CASTS = {
     "sandbox.physics.integrate.integrate_positions", "sandbox.physics.meshing.fitting._most_on_border",
