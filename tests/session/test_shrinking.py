@@ -82,7 +82,7 @@ def test_of_a_minute_of_random_play_the_gestures_are_left_that_cause_the_failure
     assert shrinker.seen is not None and len(shrinker.original.gestures) > 30
     same = shrinker.seen.failure
     smallest = shrunk(shrinker)
-    assert len(smallest.gestures) <= MOST_GESTURES and len(smallest.lines) <= 2 * MOST_GESTURES
+    assert len(smallest.gestures) <= MOST_GESTURES and len(smallest.lines) <= 3 * MOST_GESTURES
     assert shrinker.seen.failure == same and Shrinker(shrinker.level, smallest, same).seen == shrinker.seen
     for gesture in smallest.gestures:
         assert Shrinker(shrinker.level, smallest.without_gestures({gesture}), same).seen is None
