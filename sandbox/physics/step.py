@@ -44,7 +44,6 @@ def step(world: World) -> None:
             block.inputs.progress[CHECKED] = 1
         code = tick(block.pointer)
     block.end(world)
-    world.may_fly = False
     world.end_tick()
     if code == LOST:
         contain(world, block.pointer, LOST)

@@ -533,6 +533,7 @@ class World(StateArrays):
     def end_tick(self) -> None:
         """Count a tick, past the watch over attributes, which takes as long as a tenth of it."""
         self.__dict__["tick"] += 1
+        self.__dict__["may_fly"] = False
 
     def release(self, grab: int) -> None:
         """Release a hand's particle; its slots wait for the next use. No bank keeps energy that the hand put in."""

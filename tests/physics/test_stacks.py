@@ -15,6 +15,7 @@ from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, FLOOR, world
 from tests.support.physics_scenes import run, scaled
+from tests.support.situations import advance, session_of, slots_of
 
 # Of a particle [m], so that boxes are this much apart twice where they touch.
 RADIUS = 0.03
@@ -155,6 +156,34 @@ def test_what_falls_on_another_that_falls_stops_on_it_not_in_it(speed):
         below, above = (w.position[w.owner == k, 1] for k in np.unique(w.owner))
         lowest = min(lowest, above.min() - below.max() - 2.0 * RADIUS)
     assert lowest > -2e-3
+
+
+@compiled
+@pytest.mark.parametrize("every", [1.0, 1.02, 1.1])
+@pytest.mark.parametrize("spacing", [0.25, 0.5])
+@pytest.mark.parametrize("coefficients", [(1.0, 1.0), (0.99, 0.999), (0.5, 1.0)])
+def test_boxes_that_are_placed_edge_to_edge_stand_as_those_with_gaps_do(coefficients, spacing, every):
+    # Placed by a grid of 1 m they overlap by their radius, and rise as they come apart.
+    boxes = [
+        {
+            "type": "jelly",
+            "id": f"b{k}",
+            "shape": {"box": [1.0, 1.0]},
+            "spacing": spacing,
+            "position": [0, 0.5 + every * k],
+        }
+        | {"material": "m"}
+        for k in range(8)
+    ]
+    session = session_of(
+        bodies=boxes, materials={"m": dict(zip(("stiffness", "damping"), coefficients, strict=True))},
+        terrain=[{"id": "ground", "polyline": [[-50, 0], [50, 0]]}], contacts={},
+    )  # fmt: skip
+    world = advance(session, 1200).world
+    centres = np.array([world.position[slots_of(session, f"b{k}")].mean(axis=0) for k in range(8)])
+    assert np.abs(centres[:, 0]).max() < 0.1
+    assert (np.diff(centres[:, 1]) > 0.95).all()
+    assert np.abs(world.velocity).max() < 1e-3
 
 
 def test_a_stack_that_settles_passes_nearly_all_its_energy_tests_and_gains_nothing():

@@ -1,16 +1,18 @@
 """Water where it ends and where something holds: seams, floors, sides, moorings, walls; and energy at any density."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.energy import gravity_energy
+from sandbox.physics.analysis.energy import gravity_energy, spring_forces
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.step import step
 from sandbox.physics.water.displacers import FY
 from sandbox.physics.water.shapes import shares_within
 from tests.support.pools import CALM, DENSITY, G, after, free, jelly, lift_over_weight, pool, water_world
+from tests.support.situations import order, session_of
 
 STEEL = {"steel": {"stiffness": 1.0, "damping": 1.0}}
 
@@ -119,6 +121,65 @@ def test_a_river_presses_a_ball_against_a_wall_with_all_of_its_drag(density):
     world = after(water_world([river], particles=[ball(density / DENSITY, y=-3.0)], **wall), 10)
     pushed = float(np.max(block_of(world).arrays.collisions.kept.impulse[:, 0])) * 60.0
     assert pushed == pytest.approx(density * 0.3 * (1.0 + math.pi), rel=0.02)
+
+
+@pytest.mark.parametrize("density", [10.0, 1000.0])
+@pytest.mark.parametrize("size", [(1.0, 0.5), (0.5, 2.0)])
+def test_a_box_pulls_the_two_ropes_that_hold_it_in_a_river_with_all_of_its_drag(size, density):
+    (w, h), speed = size, 2.0
+    parts = jelly(size, density / DENSITY, -4.0)
+    corners = [[-w / 2.0, -4.0 - h / 2.0], [-w / 2.0, -4.0 + h / 2.0]]
+    parts["particles"] = [{"id": f"p{k}", "position": [x - 3.0, y], "pinned": True} for k, (x, y) in enumerate(corners)]
+    river = pool((-40, -12, 40, 0), density=density, flow=[speed, 0.0])
+    held = water_world([river], **parts)
+    ends = [np.argmin(np.hypot(*(held.position - corner).T)) for corner in corners]
+    parts["springs"] = [{"a": f"p{k}", "b": f"box.{end}", "material": "steel"} for k, end in enumerate(ends)]
+    parts["materials"] = parts.get("materials", {}) | STEEL
+    world = after(water_world([river], **parts), 20)
+    drag = density * (speed**2 / 2.0 * h + 0.5 * speed * 2.0 * (w + h))
+    ropes = np.isin(world.particle_a, [world.particle_slot(name) for name in ("p0", "p1")])
+    assert float(spring_forces(world)[ropes].sum()) == pytest.approx(drag, rel=0.02)
+
+
+def test_a_net_across_a_river_hangs_from_its_posts_with_all_of_its_drag():
+    names = [f"n{k}" for k in range(9)]
+    net = [{"id": n, "position": [0.0, -2.0 - 0.5 * k], "radius": 0.1, "mass": 0.3} for k, n in enumerate(names)]
+    net[0]["pinned"] = net[-1]["pinned"] = True
+    ties = [{"a": a, "b": b, "material": "steel", "rest_length": 0.6} for a, b in itertools.pairwise(names)]
+    river = pool((-40, -12, 40, 0), density=DENSITY, flow=[1.0, 0.0])
+    world = after(water_world([river], particles=net, springs=ties, materials=STEEL), 30)
+    along = world.position[world.particle_b] - world.position[world.particle_a]
+    along /= np.hypot(*along.T)[:, None]
+    pull = spring_forces(world)[:, None] * along
+    held = float(pull[0, 0] - pull[7, 0])
+    assert abs(held) == pytest.approx(7.0 * DENSITY * 0.1 * (1.0 + math.pi), rel=0.02)
+
+
+def test_a_mill_turns_with_the_river_and_no_faster():
+    paddles = {"type": "mesh", "id": "mill", "material": "steel", "particle_radius": 0.05, "masses": [0.5] * 9,
+               "particles": [[0.0, 0.0]] + [[math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)] for k in range(8)],
+               "springs": [[0, k] for k in range(1, 9)] + [[k, k % 8 + 1] for k in range(1, 9)],
+               "pinned": [0]}  # fmt: skip
+    river = pool((-40, -12, 40, -0.3), density=DENSITY, flow=[2.0, 0.0])
+    world = water_world([river], bodies=[paddles], materials=STEEL)
+    rates = []
+    for _ in range(1200):
+        step(world)
+        x, v = world.position[1:9] - world.position[0], world.velocity[1:9]
+        rates.append(float(np.mean(x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])))
+    # What is under water goes with the river, to the right.
+    assert 0.5 < np.mean(rates[-300:]) < 2.0
+
+
+@pytest.mark.parametrize("density", [10.0, 1000.0])
+def test_a_hand_holds_a_ball_in_a_river(density):
+    river = pool((-40, -12, 40, 0), density=density, flow=[1.0, 0.0])
+    session = session_of(zones=[river], particles=[ball(density / DENSITY, y=-4.0)])
+    order(session, type="grab", grab=0, particle="ball", target=[0.0, -4.0])
+    for _ in range(600):
+        session.advance()
+    assert np.hypot(*(session.world.position[0] - (0.0, -4.0))) < 0.05
+    assert np.abs(session.world.velocity[0]).max() < 1e-3
 
 
 def test_what_a_river_lets_go_is_never_faster_than_the_river():

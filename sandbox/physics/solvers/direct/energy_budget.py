@@ -14,6 +14,7 @@ beside the motion that nothing outside holds, V, by as little as that asks for:
 
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.types import Contacts
+from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.solvers.direct.network import potential, returnable, start_potential
@@ -41,9 +42,9 @@ SETTLED = 0.01
 CLOSE = 0.003
 # So much of what is too much is taken off what moves: with 1 a step would fail again by what is of second order.
 MARGIN = 1.25
-# Rounds in which ever more of what moves beside the motion to keep is taken off, before that is halved, too.
-SLOWING_ROUNDS = 16
-LAST_HALVINGS = 60
+# Rounds in which ever more is taken off: all of what moves beside the motion to keep, then all of what that turns.
+ROUNDS = 16
+SLOWING_ROUNDS = 2 * ROUNDS
 
 
 @inner_kernel
@@ -144,12 +145,18 @@ def first_ratio(excess: float, moves: float) -> float:
 
 
 @inlined_kernel
-def keeps_lengths(done: int) -> bool:
-    """Whether a round of slowing down, after so many, leaves the motion to keep alone, or nothing at all."""
-    return done == SLOWING_ROUNDS - 1 or done == SLOWING_ROUNDS + LAST_HALVINGS
+def next_ratio(ratio: float, done: int) -> float:
+    """What is left in the next round, where that was too much; done: how many rounds there were before it."""
+    return 0.0 if keeps_lengths(done) else max(2.0 * ratio - 1.0, 0.5 * ratio)
 
 
 @inlined_kernel
-def next_ratio(ratio: float, done: int) -> float:
-    """What is left in the next round, where that was too much; done: how many rounds there were before this."""
-    return max(2.0 * ratio - 1.0, 0.5 * ratio) if done < SLOWING_ROUNDS - 2 else 0.0
+def keeps_lengths(done: int) -> bool:
+    """Whether a round of slowing down, after so many, leaves the motion to keep alone."""
+    return done % ROUNDS == ROUNDS - 1
+
+
+@inlined_kernel
+def without_turn(motion: RigidMotion) -> RigidMotion:
+    """A rigid motion that turns nothing."""
+    return RigidMotion(motion.x, motion.y, motion.u, motion.v, 0.0, 0.0)

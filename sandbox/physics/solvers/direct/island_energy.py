@@ -37,7 +37,7 @@ from sandbox.physics.solvers.direct.energy_budget import (
     BUDGET_SHARE,
     ENERGY_ROUNDING,
     FALLING,
-    LAST_HALVINGS,
+    ROUNDS,
     SETTLED,
     SLOWING_ROUNDS,
     UNDERDAMPED_BUDGET_SHARE,
@@ -49,6 +49,7 @@ from sandbox.physics.solvers.direct.energy_budget import (
     next_ratio,
     reserve,
     unreturnable,
+    without_turn,
 )
 from sandbox.physics.solvers.direct.islands import (
     ALLOWED,
@@ -62,7 +63,7 @@ from sandbox.physics.solvers.direct.islands import (
 )
 from sandbox.physics.solvers.direct.network import find_tension
 from sandbox.physics.solvers.direct.response import work_of_joints
-from sandbox.physics.solvers.direct.rigid_turn import chord_at, slow_beside
+from sandbox.physics.solvers.direct.rigid_turn import chord_at, kinetic_beside, slow_beside
 from sandbox.physics.solvers.direct.system import (
     END_INERTIA,
     END_INWARD,
@@ -396,36 +397,35 @@ def _take_off_unreturnable(islands: BodyIslands, system: System, h: float) -> No
 def slow_down(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, h: float
 ) -> None:  # fmt: skip
-    """Take off what an island moves beside the motion that nothing outside holds until it passes, by as little as that
-    asks for; at rest it passes always.
+    """Take off what an island moves beside the motion that nothing outside holds, then what that turns, until it
+    passes, by as little as that asks for.
     """
     islands, rows = workspace.islands, system.rows
     bodies = islands.counts[BODIES]
     motion, held = _motion_to_keep(contacts, workspace, system, state)
-    for k in range(bodies):
-        copy(span_of(system, islands.body[k]), rows.v, islands.v_free)
     _take_off_unreturnable(islands, system, h)
-    ratio = first_ratio(
-        islands.tally[0, TOTAL] - islands.tally[0, ALLOWED], _energy_beside(motion, islands, system, state)
-    )
-    left = 1.0
-    for done in range(SLOWING_ROUNDS + LAST_HALVINGS + 1):
-        beside = done < SLOWING_ROUNDS
-        if not beside:
-            motion = RigidMotion(motion.x, motion.y, motion.u, motion.v, 0.0, 0.0)
-            ratio = 0.5 if done < SLOWING_ROUNDS + LAST_HALVINGS else 0.0
+    ratio = left = 1.0
+    for done in range(SLOWING_ROUNDS):
+        if done % ROUNDS == 0:
+            if done > 0:
+                motion = without_turn(motion)
+            for k in range(bodies):
+                copy(span_of(system, islands.body[k]), rows.v, islands.v_free)
+            moves = _kinetic_beside(motion, islands, system, state)
+            ratio, left = first_ratio(islands.tally[0, TOTAL] - islands.tally[0, ALLOWED], moves), 1.0
+        else:
+            ratio = next_ratio(ratio, done)
         for k in range(bodies):
             body = islands.body[k]
             span = span_of(system, body)
-            if beside:
-                copy(span, islands.v_free, rows.v)
+            copy(span, islands.v_free, rows.v)
             slow_beside(span, rows, motion, ratio, h)
             clamp_rows(span, rows, state, h)
             hold_triangles(span, system, h)
             energy = body_energy(body, span, system, h) - unreturnable(body, span, system, keeps_lengths(done), h)
             measure_body(k, span, system, workspace, energy, h)
         # Free particles keep no copy: what is left of them follows from round to round.
-        factor = ratio / left if beside and left > 0.0 else ratio
+        factor = ratio / left if left > 0.0 else 0.0
         for i in range(islands.counts[MEMBERS] - bodies):
             p = islands.free[i]
             u, v = chord_at(motion, state.position[p, 0], state.position[p, 1], h)
@@ -437,8 +437,6 @@ def slow_down(
         left = ratio
         if check_energy(contacts, workspace, system, state, start):
             break
-        if beside:
-            ratio = next_ratio(ratio, done)
     for k in range(bodies):
         find_tension(span_of(system, islands.body[k]), system, h)
 
@@ -515,13 +513,16 @@ def _point(i: int, islands: BodyIslands, system: System) -> tuple[int, float, fl
 
 
 @inner_kernel
-def _energy_beside(motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> float:
+def _kinetic_beside(motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> float:
     # T: the kinetic energy [J] of what an island moves beside a motion.
-    total = 0.0
-    for i in range(_points(islands, system)):
-        p, vx, vy = _point(i, islands, system)
+    bodies, total = islands.counts[BODIES], 0.0
+    for k in range(bodies):
+        total += kinetic_beside(span_of(system, islands.body[k]), system.rows, motion)
+    for i in range(islands.counts[MEMBERS] - bodies):
+        p = islands.free[i]
         u, v = velocity_at(motion, state.position[p, 0], state.position[p, 1])
-        total += 0.5 * state.mass[p] * ((vx - u) * (vx - u) + (vy - v) * (vy - v))
+        u, v = islands.v0[p, 0] + islands.delta_v[p, 0] - u, islands.v0[p, 1] + islands.delta_v[p, 1] - v
+        total += 0.5 * state.mass[p] * (u * u + v * v)
     return total
 
 

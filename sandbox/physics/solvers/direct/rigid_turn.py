@@ -21,6 +21,7 @@ from sandbox.physics.geometry.rigid import (
     momentum_about,
     rotated,
     turn_rate,
+    velocity_at,
     with_point,
     with_turn,
 )
@@ -382,6 +383,17 @@ def chord_at(motion: RigidMotion, x: float, y: float, h: float) -> tuple[float, 
     cosine = math.sqrt(1.0 - sine * sine)
     dx, dy = x - motion.x, y - motion.y
     return motion.u + ((cosine - 1.0) * dx - sine * dy) / h, motion.v + (sine * dx + (cosine - 1.0) * dy) / h
+
+
+@inner_kernel
+def kinetic_beside(span: Span, rows: Rows, motion: RigidMotion) -> float:
+    """Kinetic energy [J] of what `v` moves beside a rigid motion."""
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        u, v = velocity_at(motion, rows.position[r, 0], rows.position[r, 1])
+        u, v = rows.v[r, 0] - u, rows.v[r, 1] - v
+        total += 0.5 * rows.mass[r] * (u * u + v * v)
+    return total
 
 
 @inner_kernel

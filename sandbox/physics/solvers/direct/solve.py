@@ -252,7 +252,7 @@ def _solve_linearly(
     islands = workspace.islands
     islands.tally[0, EXCESS] = 0.0
     for solve in range(LINEAR_SOLVES + MORE_SOLVES):
-        _solve_due(workspace, system, h, AHEAD, AHEAD)
+        _solve_due(workspace, system, h)
         affordable = _push_and_test(contacts, workspace, system, state, start, affordable, solve == 0, h)
         fails = not passes(islands)
         islands.way[0] = SOLVED_ON if fails else islands.way[0]
@@ -265,7 +265,7 @@ def _solve_linearly(
 
 
 @inner_kernel
-def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: float, behind: float) -> None:
+def _solve_due(workspace: IslandWorkspace, system: System, h: float) -> None:
     # Linearise and factor the bodies that are due: their velocities without contacts, and their Delassus blocks.
     islands, delassus, rows = workspace.islands, workspace.delassus, system.rows
     for k in range(islands.counts[BODIES]):
@@ -274,7 +274,7 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
         body = islands.body[k]
         span = span_of(system, body)
         islands.still[k] = not islands.by_mass[k] and _is_still(k, span, system, islands)
-        linearise(span, system, h, ahead, behind)
+        linearise(span, system, h, AHEAD, AHEAD)
         solve_linear(span, system)
         # What the body does without contacts; `v` stays where it was linearised.
         for r in range(span.first_row, span.last_row):

@@ -20,7 +20,6 @@ from sandbox.physics.geometry.rigid import (
     WeightedSums,
     best_turn,
     centre_of,
-    velocity_at,
     with_pair,
     with_point,
 )
@@ -30,8 +29,8 @@ from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.solvers.direct.energy_budget import (
     ENERGY_ROUNDING,
     FALLING,
-    LAST_HALVINGS,
     MORE_SOLVES,
+    ROUNDS,
     SETTLED,
     SLOWING_ROUNDS,
     body_energy,
@@ -42,6 +41,7 @@ from sandbox.physics.solvers.direct.energy_budget import (
     open_budget,
     reserve,
     unreturnable,
+    without_turn,
 )
 from sandbox.physics.solvers.direct.network import (
     AHEAD,
@@ -59,6 +59,7 @@ from sandbox.physics.solvers.direct.rigid_turn import (
     begin_turn,
     hold_spin,
     kinetic_at_end,
+    kinetic_beside,
     slow_beside,
     spin_of_body,
 )
@@ -375,30 +376,25 @@ def _minimise(body: int, span: Span, system: System, spin: RigidMotion, h: float
 
 @inner_kernel
 def _slow_down(body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float) -> float:
-    # Take off what moves beside the motion of the whole until the energy test holds, by as little as that asks for; its
-    # energy then. No length changes in that motion; and at rest it holds always.
+    # Take off what moves beside the motion of the whole, then what that turns, until the energy test holds, by as
+    # little as that asks for; its energy then. Neither changes a length in the end.
     rows = system.rows
-    copy(span, rows.v, rows.saved_delta_v)
     after = body_energy(body, span, system, h) - unreturnable(body, span, system, False, h)
-    moves = 0.0
-    for r in range(span.first_row, span.last_row):
-        u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
-        u = rows.v[r, 0] - u
-        v = rows.v[r, 1] - v
-        moves += 0.5 * rows.mass[r] * (u * u + v * v)
-    ratio = first_ratio(after - allowed, moves)
-    for done in range(SLOWING_ROUNDS + LAST_HALVINGS + 1):
-        if done < SLOWING_ROUNDS:
-            copy(span, rows.saved_delta_v, rows.v)
-            slow_beside(span, rows, spin, ratio, h)
-            ratio = next_ratio(ratio, done)
+    motion, ratio = spin, 1.0
+    for done in range(SLOWING_ROUNDS):
+        if done % ROUNDS == 0:
+            if done > 0:
+                motion = without_turn(motion)
+            copy(span, rows.v, rows.saved_delta_v)
+            ratio = first_ratio(after - allowed, kinetic_beside(span, rows, motion))
         else:
-            ratio = 0.5 if done < SLOWING_ROUNDS + LAST_HALVINGS else 0.0
-            slow_beside(span, rows, RigidMotion(spin.x, spin.y, spin.u, spin.v, 0.0, 0.0), ratio, h)
+            ratio = next_ratio(ratio, done)
+            copy(span, rows.saved_delta_v, rows.v)
+        slow_beside(span, rows, motion, ratio, h)
         hold_triangles(span, system, h)
         after = body_energy(body, span, system, h) - unreturnable(body, span, system, keeps_lengths(done), h)
         # The motion of the whole alone has no more than was there.
-        if after <= allowed or (done == SLOWING_ROUNDS - 1 and after <= allowed * (1.0 + RIGID_ROUNDING)):
+        if after <= allowed or (done == ROUNDS - 1 and after <= allowed * (1.0 + RIGID_ROUNDING)):
             break
     find_tension(span, system, h)
     return after
