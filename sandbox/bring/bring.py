@@ -43,7 +43,9 @@ class Brought:
     def came(self) -> str:
         """The line of what was brought: "2 jellies and 1 piece of ground came in"."""
         level = self.level
-        parts = ((len(level.bodies), "jelly", "jellies"), (len(level.terrain), "piece of ground", "pieces of ground"))
+        plain = all(body.type == "jelly" for body in level.bodies)
+        bodies = ("jelly", "jellies") if plain else ("body", "bodies")
+        parts = ((len(level.bodies), *bodies), (len(level.terrain), "piece of ground", "pieces of ground"))
         came = " and ".join(f"{count:,} {one if count == 1 else many}" for count, one, many in parts if count)
         return f"{came} came in"
 

@@ -284,13 +284,8 @@ def common_spacing(areas: Sequence[float], particles: int = ALL_PARTICLES) -> fl
     return math.sqrt(max(sum(areas) / particles, max(areas) / MOST_PARTICLES) / ROW)
 
 
-def jelly(
-    shape: Region, name: str, spacing: float, firmness: FirmnessDef = SOFT, density: float = DENSITY
-) -> JellyDef | None:
-    """A jelly of one shape [m], with a finer mesh and fewer details than drawn where that is needed, or None.
-
-    density: mass of a square metre [kg].
-    """
+def jelly(shape: Region, name: str, spacing: float, firmness: FirmnessDef = SOFT) -> JellyDef | None:
+    """A jelly of one shape [m], with a finer mesh and fewer details than drawn where that is needed, or None."""
     polygon = shape.polygon
     spacing = min(spacing, math.sqrt(polygon.area / (ROW * FEWEST_PARTICLES)))
     for worn in WORN:
@@ -306,15 +301,15 @@ def jelly(
         most = FINE * max(FEWEST_PARTICLES, rounded.area / (ROW * spacing * spacing))
         found = fitting_spacing(outline, holes, significant(spacing, DIGITS), most)
         if found is not None:
-            mass = density * ROW * found * found
             look = BodyLook(colour=shape.colour) if shape.colour else None
             # The usual radius of particles is large beside a fine mesh.
             radius = significant(found / 8.0, DIGITS)
-            return JellyDef(
-                type="jelly", id=name, shape=PolygonShape(polygon=outline), holes=holes, position=centre,
-                mesh="fitted", spacing=found, particle_mass=max(1e-6, significant(mass, DIGITS)),
-                firmness=firmness, particle_radius=radius if radius < 0.05 else None, look=look,
+            made = JellyDef(
+                type="jelly", id=name, shape=PolygonShape(polygon=outline), holes=holes, position=centre, mesh="fitted",
+                spacing=found, firmness=firmness, particle_radius=radius if radius < 0.05 else None, look=look,
             )  # fmt: skip
+            mass = DENSITY * rounded.area / len(expansion(made).mass)
+            return replaced(made, particle_mass=max(1e-6, significant(mass, DIGITS)))
     return None
 
 

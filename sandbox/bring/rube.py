@@ -1,12 +1,13 @@
-"""Reads a R.U.B.E. scene: bodies that stand still become ground, the others stiff jellies, with their joints."""
+"""Reads a R.U.B.E. scene: bodies that stand still become ground, the others stiff bodies, with their joints.
+
+A body has the mass of all its fixtures, each with its own density, and gravity, filters and motors as the scene says.
+"""
 
 import math
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.bring.making import (
     BODY_LIMIT,
@@ -18,23 +19,19 @@ from sandbox.bring.making import (
     free_name,
     ground_of,
     jelly,
-    solid_shapes,
 )
-from sandbox.bring.sketch import (
-    FilledShape,
-    Kind,
-    LeftOut,
-    Object,
-    OpenLine,
-    Ring,
-    Sketch,
-    Unreadable,
-    check_points,
-    number,
-    objects,
-    text,
-    whole,
+from sandbox.bring.rube_scene import (
+    DYNAMIC,
+    Filter,
+    Fixture,
+    Joint,
+    SceneBody,
+    Vector,
+    scene_bodies,
+    scene_joints,
+    vector_of,
 )
+from sandbox.bring.sketch import Kind, LeftOut, Object, Unreadable, objects
 from sandbox.level.document.model import (
     ContactsDef,
     Level,
@@ -44,118 +41,94 @@ from sandbox.level.document.model import (
     SpringDef,
     TerrainDef,
 )
-from sandbox.level.format.limits import COLLISION_GROUP_LIMIT, FORMAT, GRAVITY_LIMIT, SPEED_LIMIT, VERSION
-from sandbox.level.format.quantities import replaced
+from sandbox.level.format.actuator_defs import MotorDef
+from sandbox.level.format.limits import COLLISION_GROUP_LIMIT, FORMAT, GRAVITY_LIMIT, VERSION
+from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
-from sandbox.level.kinds.jelly import CircleShape
+from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.kinds.wheel import WheelDef
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME
 
-STATIC, KINEMATIC, DYNAMIC = 0, 1, 2
 RIGID = FirmnessDef(sag=0.0)
-# Bodies and fixtures of a scene.
-SCENE_LIMIT = 2_000
 MOVING_LIMIT = 300
 # Particles of all that moves, but for small bodies: what is stiff needs few.
 STIFF_PARTICLES = 600
-# Rings of a disc (one of fewer stops at its corners), and corners of a circle of ground.
-DISC_RINGS, ROUND = 4, 32
-FRICTION_LIMIT = 100.0
-GROUND, JELLY = "ground", "jelly"
-Vector = tuple[float, float]
+# Rings of a disc: one of fewer stops at its corners.
+DISC_RINGS = 4
+JELLY = "jelly"
 MATERIAL = "joint"
 # Nearer than this to a particle, of the body's size, a joint is at that particle.
 SAME = 1e-3
-
-
-@dataclass(frozen=True)
-class SceneBody:
-    """A body of a scene: how it moves, where it is, and what its fixtures fill [m], as in the world."""
-
-    name: str
-    kind: int
-    place: Vector
-    angle: float
-    velocity: Vector
-    outlines: tuple[FilledShape, ...]
-    lines: tuple[OpenLine, ...]
-    circle: float | None
-    density: float
-    friction: float | None
-    restitution: float | None
-
-    def to_world(self, point: Vector) -> Vector:
-        """A place in the body's own coordinates, in the world."""
-        cosine, sine = math.cos(self.angle), math.sin(self.angle)
-        x, y = point
-        return self.place[0] + x * cosine - y * sine, self.place[1] + x * sine + y * cosine
-
-
-@dataclass(frozen=True)
-class Joint:
-    """A joint of two bodies, by index; places [m]: of its anchors; collides: whether the two touch each other."""
-
-    kind: str
-    bodies: tuple[int, int]
-    places: tuple[Vector, Vector]
-    length: float
-    collides: bool
+# A hinge as near to the middle of a disc as this, of its radius, is its axle.
+AXLE = 0.05
+# Spokes of a wheel with a motor, and its rim; the hub has what the rim leaves of the moment of inertia of a disc.
+SPOKES, RIM = 24, 0.3
+# What stands still and holds a hinge becomes a body only if it is no larger than so many times what moves.
+BRACKET = 20.0
+# Digits of places and masses in a file.
+FINEST = 6
 
 
 @dataclass
 class JoinedBodies:
-    """Bodies, and what joins them; taken: ids that are in use; passing: pairs of bodies that do not touch."""
+    """Bodies with their filters, by id, and what joins them; taken: ids that are in use; passing: pairs that do not
+    touch, by id.
+    """
 
-    bodies: list[BodyDef]
-    taken: set[str]
+    bodies: list[BodyDef] = field(default_factory=list)
+    taken: set[str] = field(default_factory=set)
+    filters: dict[str, Filter] = field(default_factory=dict)
     particles: list[ParticleDef] = field(default_factory=list)
     springs: list[SpringDef] = field(default_factory=list)
     welds: list[tuple[str, str]] = field(default_factory=list)
     passing: list[tuple[str, str]] = field(default_factory=list)
 
+    def add(self, made: Sequence[BodyDef], body: SceneBody) -> None:
+        """Add the bodies that one of the scene became."""
+        self.bodies += made
+        self.filters |= {each.id: body.solid[0].filter for each in made}
+
 
 def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: str) -> tuple[Level, LeftOut]:
     """A level of a scene, in its own metres unless a width [m] is told. Raises Unreadable."""
     left_out = LeftOut()
-    bodies = [_body(each, left_out) for each in _some(scene, "body")]
-    scale = _scale(bodies, width)
-    bodies = [_scaled(body, scale) for body in bodies]
-    places = [ring for body in bodies for outline in body.outlines for ring in outline.rings]
-    places += [line.points for body in bodies for line in body.lines]
-    if any(np.max(np.abs(ring)) > LARGEST for ring in places):
+    bodies, scale = scene_bodies(scene, width, left_out)
+    if any(np.max(np.abs(each.ring)) > LARGEST for body in bodies for each in body.fixtures):
         raise Unreadable(f"has places beyond {LARGEST:,.0f} m; give it a smaller width")
-    taken: set[str] = set()
-    owners: list[list[BodyDef]] = [[] for _ in bodies]
+    # Lines alone have no mass, so that nothing moves them.
+    moving = [kind == JELLY or (kind is None and body.kind == DYNAMIC and bool(body.solid)) for body in bodies]
+    areas = [sum(shape.polygon.area for shape in body.shapes()) or 1e-6 for k, body in enumerate(bodies) if moving[k]]
+    spacing = common_spacing(areas, STIFF_PARTICLES)
+    joints = scene_joints(scene, bodies, scale, left_out)
+    brackets = _brackets(joints, bodies, moving, BRACKET * max(areas, default=0.0)) if kind is None else set()
+    motors = _motors(joints, bodies, moving, left_out)
+    found = JoinedBodies()
     terrain: list[TerrainDef] = []
-    spacing = common_spacing(
-        [
-            sum(shape.polygon.area for shape in _shapes(body)) or 1e-6
-            for body in bodies
-            if body.kind == DYNAMIC and kind != GROUND
-        ],
-        STIFF_PARTICLES,
-    )
+    owners: list[BodyDef | None] = []
     for index, body in enumerate(bodies):
-        # Lines alone have no mass, so that nothing moves them.
-        is_chain = bool(body.lines) and not body.outlines
-        if kind == JELLY or (kind is None and body.kind == DYNAMIC and not is_chain):
-            owners[index] = _jellies(body, name, spacing, taken, left_out)
+        made: list[BodyDef] = []
+        if moving[index] or index in brackets:
+            made = _bodies(body, name, spacing, motors.get(index), found.taken, left_out)
+            if index in brackets:
+                made = [replaced(each, pinned=tuple(range(len(expansion(each).mass)))) for each in made]
+            found.add(made, body)
         else:
-            for piece in ground_of(_shapes(body), body.lines, name, left_out):
-                own, touch = free_name(body.name or name, name, taken), (body.friction, body.restitution)
-                terrain.append(replaced(piece, id=own, friction=touch[0], restitution=touch[1]))
-    if sum(map(len, owners)) > MOVING_LIMIT:
+            terrain += _ground(body, name, found.taken, left_out)
+        owners.append(made[0] if made else None)
+    if len(found.bodies) > MOVING_LIMIT:
         raise Unreadable(f"has more than {MOVING_LIMIT} bodies that move; make it smaller")
-    found = JoinedBodies([body for made in owners for body in made], taken)
-    for joint in _joints(scene, bodies, scale, left_out):
-        one, other = (owners[index][0] if owners[index] else None for index in joint.bodies)
+    for joint in joints:
+        one, other = (owners[index] for index in joint.bodies)
         _join(found, joint, one, other)
-    _let_pass(found, left_out)
+    still = {each.filter for k, body in enumerate(bodies) if owners[k] is None for each in body.fixtures}
+    _let_pass(found, still, left_out)
     if objects(scene, "image"):
         left_out.add("image", len(objects(scene, "image")))
-    gravity = _vector(scene, "gravity", GRAVITY_LIMIT)
     level = Level(
-        format=FORMAT, version=VERSION, name=name, contacts=ContactsDef(), settings=Settings(gravity=gravity),
+        format=FORMAT, version=VERSION, name=name, contacts=ContactsDef(),
+        settings=Settings(gravity=vector_of(scene, "gravity", GRAVITY_LIMIT)),
         materials={MATERIAL: NissenMaterial(stiffness=1.0, damping=1.0)} if found.springs else {},
     )  # fmt: skip
     level = replaced(
@@ -166,179 +139,155 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
     return level, left_out
 
 
-def _some(scene: Object, key: str) -> list[Object]:
-    found = objects(scene, key)
-    if len(found) > SCENE_LIMIT:
-        raise Unreadable(f"has more than {SCENE_LIMIT:,} items of {key}; make it smaller")
-    return found
+def _ground(body: SceneBody, base: str, taken: set[str], left_out: LeftOut) -> list[TerrainDef]:
+    """The ground of a body: fixtures of one friction and restitution are united."""
+    made: list[TerrainDef] = []
+    for touch in dict.fromkeys((each.friction, each.restitution) for each in body.fixtures):
+        alike = tuple(each for each in body.fixtures if (each.friction, each.restitution) == touch)
+        part = replace(body, fixtures=alike)
+        for piece in ground_of(part.shapes(), part.lines, base, left_out):
+            own = free_name(body.name or base, base, taken)
+            made.append(replaced(piece, id=own, friction=touch[0], restitution=touch[1]))
+    return made
 
 
-def _body(body: Object, left_out: LeftOut) -> SceneBody:
-    kind = whole(body, "type")
-    if kind == KINEMATIC:
-        left_out.add("motion of a kinematic body (it stands still)")
-    made = SceneBody(
-        text(body, "name"), kind, _vector(body, "position", 1e6), _real(body, "angle"),
-        _vector(body, "linearVelocity", SPEED_LIMIT), (), (), None, 0.0, None, None,
-    )  # fmt: skip
-    if abs(made.angle) > 1e6:
-        raise Unreadable("angle: has turned more than a million radians")
-    if kind == DYNAMIC and _real(body, "angularVelocity"):
-        left_out.add("turning rate of a body")
-    outlines: list[FilledShape] = []
-    lines: list[OpenLine] = []
-    fixtures = _some(body, "fixture")
-    solid = [each for each in fixtures if not each.get("sensor")]
-    if len(solid) < len(fixtures):
-        left_out.add("sensor", len(fixtures) - len(solid))
-    for fixture in solid:
-        ring, closed = _fixture(fixture, left_out)
-        placed = np.array([made.to_world((x, y)) for x, y in ring.tolist()]).reshape(-1, 2)
-        if closed and len(placed) > 2:
-            outlines.append(FilledShape((placed,), "nonzero", None, made.name))
-        elif len(placed) > 1:
-            lines.append(OpenLine(placed, 0.0, None, made.name))
-    circle = None
-    if len(solid) == 1 and isinstance(solid[0].get("circle"), dict) and outlines:
-        circle = _real(solid[0]["circle"], "radius")
-    first: Object = solid[0] if solid else {}
-    return replace(
-        made, outlines=tuple(outlines), lines=tuple(lines), circle=circle, density=_real(first, "density"),
-        friction=_within(first, "friction", FRICTION_LIMIT), restitution=_within(first, "restitution", 1.0),
-    )  # fmt: skip
-
-
-def _fixture(fixture: Object, left_out: LeftOut) -> tuple[Ring, bool]:
-    """Points of a fixture in its body's coordinates, and whether they go around something solid."""
-    for key in ("polygon", "chain", "loop", "edge"):
-        part = fixture.get(key)
-        if not isinstance(part, dict):
-            continue
-        if key == "edge":
-            return np.array([_vector(part, "vertex1", 1e6), _vector(part, "vertex2", 1e6)]), False
-        vertices = part.get("vertices")
-        if not isinstance(vertices, dict):
-            break
-        rows = [_row(vertices, axis) for axis in ("x", "y")]
-        if len(rows[0]) != len(rows[1]):
-            break
-        ring = np.array(rows, dtype=np.float64).T.reshape(-1, 2)
-        if key == "loop" and len(ring):
-            ring = np.concatenate([ring, ring[:1]])
-        return ring, key == "polygon"
-    circle = fixture.get("circle")
-    if isinstance(circle, dict):
-        radius, (x, y) = _real(circle, "radius"), _vector(circle, "center", 1e6)
-        if 0.0 < radius < 1e6:
-            turn = np.arange(ROUND) * (math.tau / ROUND)
-            return np.stack([x + radius * np.cos(turn), y + radius * np.sin(turn)], axis=1), True
-    left_out.add("fixture that cannot be read")
-    return np.zeros((0, 2)), False
-
-
-def _scale(bodies: Sequence[SceneBody], width: float | None) -> float:
-    if width is None:
-        return 1.0
-    rings = [ring for body in bodies for outline in body.outlines for ring in outline.rings]
-    rings += [line.points for body in bodies for line in body.lines]
-    across = float(np.ptp(np.concatenate(rings)[:, 0])) if rings else 0.0
-    if across <= 0.0:
-        raise Unreadable("has no outline to bring in")
-    return width / across
-
-
-def _scaled(body: SceneBody, scale: float) -> SceneBody:
-    if scale == 1.0:
-        return body
-
-    def larger(ring: NDArray[np.float64]) -> NDArray[np.float64]:
-        return ring * scale
-
-    return replace(
-        body, place=(body.place[0] * scale, body.place[1] * scale),
-        outlines=tuple(replace(each, rings=tuple(map(larger, each.rings))) for each in body.outlines),
-        lines=tuple(replace(each, points=larger(each.points)) for each in body.lines),
-        circle=None if body.circle is None else body.circle * scale,
-    )  # fmt: skip
-
-
-def _jellies(body: SceneBody, base: str, spacing: float, taken: set[str], left_out: LeftOut) -> list[BodyDef]:
-    """The jellies of a body: one for each part of it that is apart from the others, the largest first."""
+def _bodies(
+    body: SceneBody, base: str, spacing: float, motor: MotorDef | None, taken: set[str], left_out: LeftOut
+) -> list[BodyDef]:
+    """The bodies that one becomes: one for each part of it that is apart from the others, the largest first."""
     if body.lines:
         left_out.add("chain of a body that moves", len(body.lines))
-    density = body.density if body.density > 0.0 else DENSITY
-    shapes = _shapes(body)
+    for key in ("friction", "restitution", "filter"):
+        if len({getattr(each, key) for each in body.solid}) > 1:
+            left_out.add(f"{key} of a fixture (a body has one)")
+    shapes = body.shapes()
     if len(shapes) > 1:
         left_out.add("part of a body that is apart from the rest (it came in as one of its own)", len(shapes) - 1)
     made: list[BodyDef] = []
     for shape in shapes[:BODY_LIMIT]:
-        name = free_name(body.name or base, base, taken)
-        found = jelly(shape, name, spacing, RIGID, density)
+        found = jelly(shape, free_name(body.name or base, base, taken), spacing, RIGID)
         if found is None:
             left_out.add("body too fine for a mesh")
             continue
         if body.circle is not None:
-            # One that rolls as a whole, as heavy as one of another mesh.
+            # One that rolls as a whole.
             even = body.circle / DISC_RINGS
-            mass = min(1e9, max(1e-9, found.particle_mass * (even / found.spacing) ** 2))
-            found = replaced(
-                found, shape=CircleShape(circle=body.circle), holes=(), spacing=even, particle_mass=mass,
-                particle_radius=min(0.05, even / 8.0),
-            )  # fmt: skip
-        made.append(replaced(found, velocity=body.velocity, friction=body.friction, restitution=body.restitution))
+            round_one = {"shape": CircleShape(circle=body.circle), "holes": (), "spacing": even}
+            found = replaced(found, **round_one, particle_radius=min(0.05, even / 8.0))
+        heavy = _weighed(found, shape, body.solid)
+        if motor is not None and body.circle is not None:
+            heavy = _wheel(heavy, body.circle, motor)
+        touch = {"friction": body.solid[0].friction, "restitution": body.solid[0].restitution}
+        made.append(replaced(heavy, velocity=body.velocity, gravity_scale=body.gravity_scale, **touch))
     return made
 
 
-def _shapes(body: SceneBody) -> list[Region]:
-    drawing = Sketch("jelly", list(body.outlines))
-    check_points(drawing)
-    return solid_shapes(drawing)
+def _weighed(found: JellyDef, shape: Region, fixtures: Sequence[Fixture]) -> BodyDef:
+    """A jelly with the mass of its fixtures; where these are not equally dense, a mesh whose particles differ."""
+    import shapely
+
+    parts = [shapely.Polygon(each.ring).buffer(0.0) for each in fixtures]
+    own = [k for k, part in enumerate(parts) if part.intersection(shape.polygon).area > 0.5 * part.area]
+    dense = [fixtures[k].density if any(fixtures[k].density for k in own) else DENSITY for k in own]
+    radius = found.shape.circle if isinstance(found.shape, CircleShape) else None
+    areas = [math.pi * radius**2 if radius else parts[k].area for k in own]
+    total = sum(area * density for area, density in zip(areas, dense, strict=True))
+    made = expansion(found)
+    # What overlaps is heavier there.
+    if len(set(dense)) == 1 and sum(parts[k].area for k in own) < 1.01 * shape.polygon.area:
+        return replaced(found, particle_mass=min(1e9, max(1e-9, total / len(made.mass))))
+    triangles, places = made.polygons(), made.position
+    middles = shapely.points(places[triangles].mean(axis=1))
+    density = np.sum(
+        [value * shapely.intersects(parts[k], middles) for k, value in zip(own, dense, strict=True)], axis=0
+    )
+    ax, ay = (places[triangles[:, 1]] - places[triangles[:, 0]]).T
+    bx, by = (places[triangles[:, 2]] - places[triangles[:, 0]]).T
+    third = np.abs(ax * by - ay * bx) * np.maximum(density, 1e-3 * np.max(density))
+    mass = np.bincount(triangles.reshape(-1), np.repeat(third, 3), minlength=len(places))
+    mass = np.clip(mass * (total / float(mass.sum())), 1e-9, 1e9)
+    return MeshDef(
+        type="mesh", id=found.id, particles=tuple((x, y) for x, y in np.round(places, FINEST).tolist()),
+        springs=tuple((a, b) for a, b in made.pairs.tolist()),
+        triangles=tuple((a, b, c) for a, b, c in triangles.tolist()),
+        masses=tuple(significant(value, FINEST) for value in mass.tolist()), firmness=found.firmness,
+        particle_radius=found.particle_radius, look=found.look,
+    )  # fmt: skip
 
 
-def _joints(scene: Object, bodies: Sequence[SceneBody], scale: float, left_out: LeftOut) -> list[Joint]:
-    found = []
-    for each in _some(scene, "joint"):
-        kind = text(each, "type")
-        ends = whole(each, "bodyA"), whole(each, "bodyB")
-        if kind not in ("revolute", "weld", "distance"):
-            left_out.add(f"{kind[:20] or 'nameless'} joint")
+def _wheel(disc: BodyDef, radius: float, motor: MotorDef) -> BodyDef:
+    """A wheel in the place of a disc, of its mass and moment of inertia."""
+    made = expansion(disc)
+    mass = float(made.mass.sum())
+    x, y = np.average(made.position, axis=0, weights=made.mass).tolist()
+    # SPOKES m (R^2 + r^2) = M R^2 / 2
+    of_rim = 0.5 * mass / (SPOKES * (1.0 + (1.0 - RIM) ** 2))
+    return WheelDef(
+        type="wheel", id=disc.id, position=(round(x, FINEST), round(y, FINEST)), radius=radius, thickness=RIM * radius,
+        segments=SPOKES, particle_mass=of_rim, hub_mass=mass - 2 * SPOKES * of_rim, motor=motor, firmness=disc.firmness,
+        particle_radius=disc.particle_radius, touches_mount=False,
+    )  # fmt: skip
+
+
+def _brackets(joints: Sequence[Joint], bodies: Sequence[SceneBody], moving: Sequence[bool], most: float) -> set[int]:
+    """Bodies that stand still and are held by joints in what may not touch them: they are no ground but bodies."""
+    found: set[int] = set()
+    for joint in joints:
+        for index, other in (joint.bodies, joint.bodies[::-1]):
+            if joint.collides or moving[index] or not moving[other] or bodies[index].lines:
+                continue
+            shapes = bodies[index].shapes()
+            fits = len(shapes) == 1 and shapes[0].polygon.area <= most
+            if fits and any(shapes[0].polygon.intersects(each.polygon) for each in bodies[other].shapes()):
+                found.add(index)
+    return found
+
+
+def _motors(
+    joints: Sequence[Joint], bodies: Sequence[SceneBody], moving: Sequence[bool], left_out: LeftOut
+) -> dict[int, MotorDef]:
+    """The motors of discs that a joint turns about their middles, by body."""
+    found: dict[int, MotorDef] = {}
+    for joint in joints:
+        if joint.motor is None:
             continue
-        if not all(0 <= index < len(bodies) for index in ends) or ends[0] == ends[1]:
-            left_out.add("joint of a body that is not there")
-            continue
-        for key, word in (("enableMotor", "motor of a joint"), ("enableLimit", "limit of a joint")):
-            if each.get(key) is True:
-                left_out.add(word)
-        if kind == "distance" and _real(each, "frequency"):
-            left_out.add("softness of a distance joint")
-        anchors = [_vector(each, key, 1e6) for key in ("anchorA", "anchorB")]
-        places = tuple(
-            bodies[index].to_world((x * scale, y * scale)) for index, (x, y) in zip(ends, anchors, strict=True)
-        )
-        collides = each.get("collideConnected") is True
-        found.append(Joint(kind, ends, (places[0], places[1]), max(0.0, _real(each, "length")) * scale, collides))
+        speed, torque = joint.motor
+        for index, place, way in zip(joint.bodies[::-1], joint.places[::-1], (1.0, -1.0), strict=True):
+            radius = bodies[index].circle
+            if not radius or not moving[index] or index in found:
+                continue
+            x, y = bodies[index].fixtures[0].ring.mean(axis=0).tolist()
+            if math.hypot(place[0] - x, place[1] - y) <= AXLE * radius:
+                found[index] = MotorDef(speed=max(-1e4, min(1e4, way * speed)), torque=min(1e12, max(0.0, torque)))
+                break
+        else:
+            left_out.add("motor of a joint that is no axle of a disc")
     return found
 
 
 def _join(found: JoinedBodies, joint: Joint, one: BodyDef | None, other: BodyDef | None) -> None:
     """Join two bodies, None = ground; a joint of what does not move is none."""
+    both = [body for body in (one, other) if body is not None]
+    if len(both) == 2 and not joint.collides:
+        found.passing.append((both[0].id, both[1].id))
+    # What is pinned all over holds as ground does.
+    one, other = (None if body is None or body.pinned else body for body in (one, other))
     held = [body for body in (one, other) if body is not None]
     if not held:
         return
     if joint.kind == "distance":
         ends = [_pin(found, place, [body]) for place, body in zip(joint.places, (one, other), strict=True)]
-        length = joint.length or None
-        found.springs.append(SpringDef(a=ends[0], b=ends[1], rest_length=length, material=MATERIAL))
-    else:
-        _pin(found, joint.places[0], [one, other])
-        if joint.kind == "weld":
-            # One more, half way to the farthest particle, lets nothing turn.
-            places, first = expansion(min(held, key=lambda body: len(expansion(body).mass))).position, joint.places[0]
-            farthest = places[int(np.argmax(np.hypot(*(places - np.array(first)).T)))]
-            x, y = (0.5 * (farthest + np.array(first))).tolist()
-            _pin(found, (x, y), [one, other])
-    if len(held) == 2 and not joint.collides:
-        found.passing.append((held[0].id, held[1].id))
+        found.springs.append(SpringDef(a=ends[0], b=ends[1], rest_length=joint.length or None, material=MATERIAL))
+        return
+    # A wheel slides along an axis; where it is, it turns.
+    first = joint.places[1] if joint.kind == "wheel" else joint.places[0]
+    _pin(found, first, [one, other])
+    if joint.kind == "weld":
+        # One more, half way to the farthest particle, lets nothing turn.
+        places = expansion(min(held, key=lambda body: len(expansion(body).mass))).position
+        farthest = places[int(np.argmax(np.hypot(*(places - np.array(first)).T)))]
+        x, y = (0.5 * (farthest + np.array(first))).tolist()
+        _pin(found, (x, y), [one, other])
 
 
 def _pin(found: JoinedBodies, place: Vector, bodies: list[BodyDef | None]) -> str:
@@ -378,50 +327,36 @@ def _corners_around(body: BodyDef, place: Vector) -> list[int]:
     return [int(index) for index in triangles[nearest]]
 
 
-def _let_pass(found: JoinedBodies, left_out: LeftOut) -> None:
-    """Give joined bodies a collision group each, so that they pass through each other."""
+def _let_pass(found: JoinedBodies, still: set[Filter], left_out: LeftOut) -> None:
+    """Give bodies collision groups, so that what is joined, and what filters keep apart, does not touch.
+
+    still: filters of the ground.
+    """
     partners: dict[str, set[str]] = {}
     for one, other in found.passing:
         partners.setdefault(one, set()).add(other)
         partners.setdefault(other, set()).add(one)
-    if len(partners) > COLLISION_GROUP_LIMIT - 2 or partners.keys() & {DEFAULT_GROUP, TERRAIN_NAME}:
-        left_out.add("pair of joined bodies that now touch", len(found.passing))
+    # A group for each of those that pass through another one, and one for all others of a filter.
+    filters: dict[str, Filter] = {DEFAULT_GROUP: Filter()}
+    group_of: dict[str, str] = {}
+    for name, own in found.filters.items():
+        alike = next((group for group, each in filters.items() if each == own and group not in partners), None)
+        group = name if name in partners else alike or f"filter {len(filters)}"
+        filters[group], group_of[name] = own, group
+    if len(filters) > COLLISION_GROUP_LIMIT - 1 or found.filters.keys() & {DEFAULT_GROUP, TERRAIN_NAME}:
+        left_out.add("pair of bodies that now touch", max(1, len(found.passing)))
         return
-    everything = {TERRAIN_NAME, DEFAULT_GROUP, *partners}
     for index, body in enumerate(found.bodies):
-        if body.id in partners:
-            touched = tuple(sorted(everything - partners[body.id] - {body.id}))
-            found.bodies[index] = replaced(body, collision_group=body.id, collides=touched)
-
-
-def _within(holder: Object, key: str, most: float) -> float | None:
-    return min(most, max(0.0, _real(holder, key))) if key in holder else None
-
-
-def _vector(holder: Object, key: str, most: float) -> Vector:
-    """A vector; R.U.B.E. writes 0 for one without length. Raises Unreadable."""
-    value = holder.get(key, 0)
-    if not isinstance(value, dict):
-        value = {"x": _real(holder, key), "y": 0.0} if value else {}
-    x, y = _real(value, "x"), _real(value, "y")
-    if max(abs(x), abs(y)) > most:
-        raise Unreadable(f"{key}: is beyond {most:,.0f}")
-    return x, y
-
-
-def _row(holder: Object, key: str) -> list[float]:
-    value = holder.get(key)
-    if not isinstance(value, list) or len(value) > 10_000:
-        raise Unreadable(f"vertices: {key} is no list of numbers, or one of more than 10,000")
-    return [_real({key: item}, key) for item in value]
-
-
-def _real(holder: Object, key: str) -> float:
-    """A number, also one that R.U.B.E. has written as the eight digits of its bits. Raises Unreadable."""
-    value = holder.get(key, 0.0)
-    if isinstance(value, str) and len(value) == 8:
-        try:
-            value = struct.unpack(">f", bytes.fromhex(value))[0]
-        except ValueError:
-            raise Unreadable(f"{key}: is no number") from None
-    return number({key: value}, key)
+        own, group = found.filters[body.id], group_of[body.id]
+        meets = {own.meets(each) for each in still}
+        if len(meets) > 1:
+            left_out.add("filter between a body and a part of the ground (they touch)")
+        touched = [
+            name
+            for name, each in filters.items()
+            if own.meets(each) and name not in partners.get(body.id, ()) and not (name == group == body.id)
+        ]
+        if meets != {False}:
+            touched.append(TERRAIN_NAME)
+        if group != DEFAULT_GROUP or TERRAIN_NAME not in touched:
+            found.bodies[index] = replaced(body, collision_group=group, collides=tuple(sorted(touched)))

@@ -93,6 +93,8 @@ class _Reader:
         self.drawing = Sketch("jelly")
         self._box = _page(root)
         self._paths = Paths((self._box[2], self._box[3]))
+        # Width and height that a copy gives to the drawing which it copies.
+        self._copy_size: tuple[float | None, float | None] = None, None
         self._sheet: Sheet = _style_sheet(root, self.drawing.left_out)
         self._by_id: dict[str, Element] = {}
         for element in root.iter():
@@ -119,19 +121,50 @@ class _Reader:
                 self.drawing.left_out.add(word)
         kind = local_name(element)
         try:
-            matrix = matrix @ _matrix(element.get("transform", ""))
+            matrix = matrix @ _matrix(own.get("transform") or element.get("transform") or "")
         except STUMBLES:
             self.drawing.left_out.add("transform that cannot be read")
         name = element.get(_LABEL) or (element.get("id", "") if kind in SHAPES else "") or name
         if kind == "use":
             self._copy(element, matrix, style, depth, name)
+        elif kind in ("svg", "symbol"):
+            self._read_viewport(element, matrix, style, depth, name)
         elif kind in CONTAINERS:
             for child in self._children(element):
                 self.read(child, matrix, style, depth + 1, name)
         elif style.visibility not in ("hidden", "collapse") and not _is_zero(own.get("opacity", "1")):
             self._take(element, matrix, style, name)
 
+    def _read_viewport(
+        self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str
+    ) -> None:
+        # A drawing, with a view box and lengths of its own: the page, one in it, or a symbol that is copied.
+        size, self._copy_size = self._copy_size, (None, None)
+        page = self._paths.page
+        try:
+            x, y = (0.0, 0.0) if depth == 0 else (self._paths.length(element, key, k) for k, key in enumerate("xy"))
+            width, height = (
+                self._paths.length(element, key, k, "100%") if size[k] is None or size[k] == 0.0 else size[k] or 0.0
+                for k, key in enumerate(("width", "height"))
+            )
+            inner, self._paths.page = _view(element, (x, y, width, height))
+        except STUMBLES:
+            self.drawing.left_out.add("view box that cannot be read")
+            inner = np.eye(3)
+        if depth == 0:
+            # Whole drawings are as large as they are made; but they may be stretched.
+            inner = np.diag([1.0, inner[1, 1] / inner[0, 0], 1.0])
+            self._box = self._box[0], self._box[1] * inner[1, 1], self._box[2], self._box[3] * inner[1, 1]
+        for child in self._children(element):
+            self.read(child, matrix @ inner, style, depth + 1, name)
+        self._paths.page = page
+
     def _children(self, element: Element) -> Iterator[Element]:
+        if local_name(element) == "switch":
+            # The first that a program can show which knows English and nothing beyond SVG.
+            shown = (child for child in element if local_name(child) != "foreignObject" and _is_chosen(child))
+            yield from [child for child in shown if local_name(child) in (*SHAPES, *CONTAINERS, "use")][:1]
+            return
         for child in element:
             kind, space = local_name(child), str(child.tag).rpartition("}")[0].removeprefix("{")
             if kind in SHAPES or kind == "use" or (kind in CONTAINERS and kind != "symbol"):
@@ -153,8 +186,19 @@ class _Reader:
         except STUMBLES:
             self.drawing.left_out.add("place that cannot be read")
         self._copied.append(target)
+        if local_name(target) in ("svg", "symbol"):
+            self._copy_size = self._size_of(element)
         self.read(target, matrix @ moved, style, depth + 1, name)
         self._copied.pop()
+
+    def _size_of(self, copy: Element) -> tuple[float | None, float | None]:
+        try:
+            width, height = (
+                self._paths.length(copy, key, k) if copy.get(key) else None for k, key in enumerate(("width", "height"))
+            )
+        except STUMBLES:
+            return None, None
+        return width, height
 
     def _take(self, element: Element, matrix: NDArray[np.float64], style: Style, name: str) -> None:
         kind = local_name(element)
@@ -231,6 +275,39 @@ class _Reader:
             self.drawing.left_out.add("background")
 
 
+def _is_chosen(element: Element) -> bool:
+    languages = element.get("systemLanguage")
+    return (not languages or "en" in languages) and not element.get("requiredExtensions")
+
+
+def _view(
+    element: Element, place: tuple[float, float, float, float]
+) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """From coordinates in a drawing to those around it, and its width and height in its own.
+
+    place: left, top, width and height around it. Raises ValueError for a view box that is none.
+    """
+    x, y, width, height = place
+    numbers = [float(number) for number in _NUMBER.findall(element.get("viewBox", "")[:200])]
+    inner = np.eye(3)
+    if not numbers:
+        inner[:2, 2] = x, y
+        return inner, (width, height)
+    if len(numbers) != 4 or not (numbers[2] > 0.0 and numbers[3] > 0.0 and width > 0.0 and height > 0.0):
+        raise ValueError("no view box")
+    left, top, across, up = numbers
+    words = element.get("preserveAspectRatio", "xMidYMid")[:100].split() or ["xMidYMid"]
+    scale = np.array([width / across, height / up])
+    if words[0] != "none":
+        scale[:] = scale.max() if "slice" in words else scale.min()
+    for axis, (word, room, size) in enumerate((("x", width, across), ("y", height, up))):
+        at = next((k for k, side in enumerate(("Min", "Mid", "Max")) if f"{word}{side}".lower() in words[0].lower()), 1)
+        inner[axis, axis] = scale[axis]
+        spare = 0.0 if words[0] == "none" else 0.5 * at * (room - size * scale[axis])
+        inner[axis, 2] = (x, y)[axis] + spare - scale[axis] * (left, top)[axis]
+    return inner, (across, up)
+
+
 def _placed(points: Ring, matrix: NDArray[np.float64]) -> Ring:
     """Points on the page, with y upward. Raises ValueError for what is no number."""
     placed = points @ matrix[:2, :2].T + matrix[:2, 2]
@@ -283,15 +360,37 @@ def _style_sheet(root: Element, left_out: LeftOut) -> Sheet:
 
 
 def _rules(text: str) -> Iterator[tuple[str, str]]:
-    """Selectors and declarations of the rules of a style sheet; of rules in others those without such. In one pass."""
+    """Selectors and declarations of the rules of a style sheet that hold for a page on a screen. In one pass."""
     selectors = None
+    # Of what rules are in: whether it holds.
+    around: list[bool] = []
     for found in _UP_TO_BRACE.finditer(text):
         before, brace = found.groups()
-        if brace == "}" and selectors:
+        head = before.rpartition(";")[2].strip()
+        if brace == "{" and head.startswith("@"):
+            around.append(_holds(head))
+            selectors = None
+        elif brace == "{":
+            selectors = head
+        elif brace == "}" and selectors is not None:
             if len(selectors) + len(before) > STYLE_LIMIT:
                 raise Unreadable(f"has a style rule of more than {STYLE_LIMIT:,} characters; simplify it")
-            yield selectors, before
-        selectors = before if brace == "{" else None
+            if selectors and all(around):
+                yield selectors, before
+            selectors = None
+        elif brace == "}" and around:
+            around.pop()
+
+
+def _holds(head: str) -> bool:
+    """Whether the rules behind "@media print" and the like hold for a page in light colours on a screen."""
+    kind, _, asked = head[:STYLE_LIMIT].lower().partition(" ")
+    if kind in ("@supports", "@layer"):
+        return not asked.strip().startswith("not ")
+    return kind == "@media" and any(
+        (re.search(r"\b(print|speech)\b|:\s*dark\b", query) is None) != query.strip().startswith("not ")
+        for query in asked.split(",")
+    )
 
 
 def _declarations(text: str) -> dict[str, str]:
@@ -346,7 +445,7 @@ class Paths:
     """Reads shapes, of a drawing of this page [px], as long as it has not more of them than can be read."""
 
     def __init__(self, page: tuple[float, float]) -> None:
-        self._page = page
+        self.page = page
         self._read = 0
 
     def of(self, element: Element) -> list[tuple[Ring, bool]]:
@@ -370,7 +469,7 @@ class Paths:
         """An attribute as pixels; axis: what a percentage is of, 0 = width, 1 = height, 2 = both."""
         from svgelements import Length
 
-        width, height = self._page
+        width, height = self.page
         whole = (width, height, math.hypot(width, height) / math.sqrt(2.0))[axis]
         text = element.get(key) or default
         if len(text) > STYLE_LIMIT:

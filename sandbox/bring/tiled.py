@@ -48,6 +48,8 @@ BACKGROUND = 0.95
 # Shapes of a map, tiles that lie together counted as one.
 BLOCK_LIMIT = 10_000
 _AXES = np.array([1.0, -1.0])
+# Objects that are left out by their names, and letters of such a name.
+MOST_NAMED, NAME_LENGTH = 12, 40
 # Tiles of all layers.
 CELL_LIMIT = 1_000_000
 # Attributes of XML that are whole numbers, and numbers; names of layers, and elements that are a form.
@@ -99,16 +101,17 @@ class _Tiles:
                     self.solid.add(index)
         self.sizes.sort()
 
-    def height_of(self, index: int, default: float) -> float:
-        """The height of a tile of a number [pixels]."""
-        return next((height for first, _, height in reversed(self.sizes) if first <= index), default) or default
+    def size_of(self, index: int, default: tuple[float, float]) -> tuple[float, float]:
+        """Width and height of a tile of a number [pixels]."""
+        found = next(((width, height) for first, width, height in reversed(self.sizes) if first <= index), default)
+        return found[0] or default[0], found[1] or default[1]
 
 
 class _Map:
     def __init__(self, drawing: Sketch, tile: tuple[float, float], tiles: _Tiles, layers: list[Object]) -> None:
         self.drawing, self._tile, self._tiles = drawing, tile, tiles
         self._layers: list[tuple[str, bool, NDArray[np.int64], tuple[int, int], tuple[float, float]]] = []
-        self._points = self._cells = 0
+        self._points = self._cells = self._named = 0
         self._says_solid = _says_solid(layers, 0)
 
     def read(self, layers: list[Object], offset: tuple[float, float], depth: int) -> None:
@@ -124,21 +127,28 @@ class _Map:
             if kind == "group":
                 self.read(objects(layer, "layers"), place, depth + 1)
             elif kind == "objectgroup":
-                is_solid = _is_marked(layer) or bool(SOLID_LAYER.search(text(layer, "name")))
-                for each in objects(layer, "objects"):
-                    # Where nothing is said of the layer: what its own kind says is solid, or all if none says so.
-                    said = text(each, "type") or text(each, "class")
-                    is_named = bool(SOLID_LAYER.search(said)) or _is_marked(each)
-                    if is_solid or is_named or not (said or self._says_solid):
-                        self._take_object(each, place)
-                    else:
-                        self.drawing.left_out.add("object of the game")
+                self._take_objects(layer, place)
             elif kind == "tilelayer":
                 for cells, corner in _layer_cells(layer, self.drawing.left_out, CELL_LIMIT - self._cells):
                     self._cells += cells.size
                     self._layers.append((text(layer, "name"), _is_marked(layer), cells, corner, place))
             else:
                 self.drawing.left_out.add("image layer" if kind == "imagelayer" else "layer of another kind")
+
+    def _take_objects(self, layer: Object, offset: tuple[float, float]) -> None:
+        title = text(layer, "name")[:NAME_LENGTH] or "without a name"
+        is_solid = _is_marked(layer) or bool(SOLID_LAYER.search(title))
+        for each in objects(layer, "objects"):
+            # Where nothing is said of the layer: what its own kind says is solid, or all if none says so.
+            said = text(each, "type") or text(each, "class")
+            is_named = bool(SOLID_LAYER.search(said)) or _is_marked(each)
+            if is_solid or is_named or not (said or self._says_solid):
+                self._take_object(each, offset)
+                continue
+            own = (text(each, "name") or said)[:NAME_LENGTH]
+            self._named += 1
+            name = f'"{own}"' if own and self._named <= MOST_NAMED else "object"
+            self.drawing.left_out.add(f"{name} (layer {title})")
 
     def _take_object(self, each: Object, offset: tuple[float, float]) -> None:
         x, y = number(each, "x") + offset[0], number(each, "y") + offset[1]
@@ -157,17 +167,19 @@ class _Map:
             self._take_shape(each, (x, y), np.eye(2), name)
 
     def _take_tile_object(self, each: Object, x: float, y: float) -> None:
-        index = whole(each, "gid") & NUMBER
-        if index not in self._tiles.shapes:
+        cell = whole(each, "gid")
+        if cell & NUMBER not in self._tiles.shapes:
             self.drawing.left_out.add("tile object without a collision shape")
             return
-        high = self._tiles.height_of(index, self._tile[1])
-        scale = (number(each, "height") or high) / high
+        # Mirrored in its own box, stretched with that, and turned about its lower left corner.
+        wide, high = self._tiles.size_of(cell & NUMBER, self._tile)
+        mirror, move = _mirroring(cell, wide, high)
+        stretch = np.diag([(number(each, "width") or wide) / wide, (number(each, "height") or high) / high])
         angle = math.radians(number(each, "rotation"))
-        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) * scale
-        lower = turn @ np.array([0.0, -high])
-        for shape in self._tiles.shapes[index]:
-            self._take_shape(shape, (x + lower[0], y + lower[1]), turn, text(each, "name"), inner=True)
+        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) @ stretch
+        corner = turn @ (np.array(move) + np.array([0.0, -high]))
+        for shape in self._tiles.shapes[cell & NUMBER]:
+            self._take_shape(shape, (x + corner[0], y + corner[1]), turn @ mirror, text(each, "name"), inner=True)
 
     def _take_shape(
         self, each: Object, at: tuple[float, float], matrix: NDArray[np.float64], name: str, inner: bool = False
@@ -228,9 +240,9 @@ class _Map:
             cell = int(cells[row, column])
             x = (corner[0] + column) * width + offset[0]
             # Tiles larger than those of the map stand on the lower edge of their cell.
-            high = self._tiles.height_of(cell & NUMBER, height)
+            wide, high = self._tiles.size_of(cell & NUMBER, self._tile)
             y = (corner[1] + row + 1) * height - high + offset[1]
-            turn, move = _mirroring(cell, width, high)
+            turn, move = _mirroring(cell, wide, high)
             for shape in self._tiles.shapes[cell & NUMBER]:
                 self._take_shape(shape, (x + move[0], y + move[1]), turn, "", inner=True)
         return int(shaped.sum() + solid.sum())

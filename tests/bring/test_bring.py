@@ -175,7 +175,7 @@ def test_tile_sets_beside_the_map_are_read_and_others_named(tmp_path):
 def test_objects_of_the_game_are_no_ground(tmp_path):
     player = {"id": 9, "type": "player", "x": 0, "y": 0, "width": 16, "height": 16}
     layers = [*json.loads(tiled())["layers"], {"type": "objectgroup", "name": "spawns", "objects": [player]}]
-    assert "1 object of the game" in brought(tmp_path, tiled(layers=layers), "a.tmj").left_out
+    assert '1 "player" (layer spawns)' in brought(tmp_path, tiled(layers=layers), "a.tmj").left_out
 
 
 def test_a_scene_keeps_its_metres_and_moves_as_it_would(tmp_path):
@@ -183,7 +183,7 @@ def test_a_scene_keeps_its_metres_and_moves_as_it_would(tmp_path):
     level = found.level
     assert [piece.id for piece in level.terrain] == ["ground"]
     assert {body.id for body in level.bodies} == {"upper", "lower", "disc", "left", "right"}
-    assert found.left_out == ["1 motor of a joint", "1 wheel joint"]
+    assert found.left_out == ["1 motor of a joint that is no axle of a disc", "1 prismatic joint"]
     session = Session(level)
     first = {name: place(session.world, name) for name in ("upper", "lower", "left", "right", "disc")}
     for _ in range(120):

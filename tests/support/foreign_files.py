@@ -95,7 +95,7 @@ def rube(**changes):
         {"type": "revolute", "bodyA": 1, "bodyB": 2, "anchorA": {"x": 0, "y": -0.5}, "anchorB": {"x": 0, "y": 0.5},
          "enableMotor": True},
         {"type": "weld", "bodyA": 4, "bodyB": 5, "anchorA": {"x": 0.5, "y": 0}, "anchorB": {"x": -0.5, "y": 0}},
-        {"type": "wheel", "bodyA": 3, "bodyB": 0, "anchorA": 0, "anchorB": 0},
+        {"type": "prismatic", "bodyA": 3, "bodyB": 0, "anchorA": 0, "anchorB": 0},
     ]  # fmt: skip
     return json.dumps({"gravity": {"x": 0, "y": -10}, "body": bodies, "joint": joints} | changes).encode()
 

@@ -65,7 +65,7 @@ class BlockOwner:
             workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
         )
         # A tick reads and writes a few numbers of these, which numpy takes three times as long for.
-        self._progress, self._counts = memoryview(self.inputs.progress), memoryview(self.inputs.collisions.counts)
+        self._progress, self._counts = self.inputs.progress.data, self.inputs.collisions.counts.data
         self._constant: tuple[Any, ...] = ()
         self._follow_topology(world)
 
