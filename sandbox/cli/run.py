@@ -74,6 +74,7 @@ def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], b
         yield lambda: True
         return
     from sandbox.level.format.writing import unfinished
+    from sandbox.session.replay import RECORDINGS, is_recording
 
     # An older file is replaced in the end only; a device is written to.
     target = Path(os.path.realpath(path))
@@ -85,6 +86,8 @@ def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], b
         written = session.stop_recording()
         if written and written != path:
             written.replace(target)
+        if written and target.is_file() and not is_recording(path):
+            tell([f"{path}: written; tests find recordings by names that end in {' or '.join(RECORDINGS[:2])}"])
     except OSError as error:
         session.abandon_recording()
         if error.filename == str(fresh):

@@ -124,14 +124,26 @@ def read_golden(path: Path) -> Golden:
         lengths = {name: len(file.places[name]) for name in wrong}
         raise GoldenError(*(f"{path}: places.{name}: {lengths[name]} points, {len(file.at)} times" for name in wrong))
     beside = path.parent / file.level
-    return Golden(path, file, load_level(beside if beside.is_file() else file.level), _script(path, file.commands))
+    level = load_level(beside if beside.is_file() else file.level)
+    return Golden(path, file, level, _script(path, file, level))
 
 
-def _script(path: Path, commands: str | None) -> tuple[ScriptLine, ...]:
-    if commands is None:
+def _script(path: Path, file: GoldenFile, level: Level) -> tuple[ScriptLine, ...]:
+    """The commands of a golden file, all of which its run carries out. Raises GoldenError and ReplayError."""
+    if file.commands is None:
         return ()
-    file = path.parent / commands
-    return read_replay(file).script if ".replay." in file.name else read_script(file)
+    named = path.parent / file.commands
+    script = read_replay(named).script if ".replay." in named.name else read_script(named)
+    last = round(max(file.at, default=0.0) * level.settings.tick_rate)
+    late = [line.tick for line in script if line.tick > last]
+    if not script:
+        raise GoldenError(f"{path}: commands: {file.commands} holds none")
+    if not (file.places and file.at):
+        raise GoldenError(f"{path}: commands: act on places, and there are none; values have the keys of their checks")
+    if late:
+        number = "1 is" if len(late) == 1 else f"{len(late):,} are"
+        raise GoldenError(f"{path}: commands: {number} after the last place, at tick {last}; name a later time in `at`")
+    return script
 
 
 def _finder(world: World, name: str, source: str) -> tuple[list[int], list[float]]:

@@ -3,15 +3,23 @@
 import difflib
 import fnmatch
 import json
+import zlib
 from pathlib import Path
 
 import pytest
+
+from sandbox.session.replay import RECORDINGS, is_recording
 
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
 GOLDEN = ".golden.json"
 USUAL_LEVELS = ["levels/*.json"]
 LEVEL_FORMAT = "spring-sandbox/level"
+REPLAY_FORMAT = "spring-sandbox/replay"
+# What is read of a file to see whether it is a recording [bytes].
+HEAD = 4096
+# Where levels lie unless the setting says otherwise: in folders of this name.
+LEVELS = "levels"
 # A level file is no longer [bytes], see docs/level-format.md.
 LONGEST = 8 * 2**20
 _LEVELS = pytest.StashKey[frozenset[Path]]()
@@ -45,6 +53,66 @@ def level_files(config: pytest.Config) -> frozenset[Path]:
     return config.stash[_LEVELS]
 
 
+def is_asked_level(config: pytest.Config, path: Path) -> bool:
+    """Whether a file is among those of `sandbox_levels`; without that setting also in any folder `levels`."""
+    if path in level_files(config):
+        return True
+    is_usual = config.getini("sandbox_levels") == USUAL_LEVELS
+    return is_usual and LEVELS in path.parts[:-1] and says_it_is_a_level(path)
+
+
+def levels_around(path: Path, name: str) -> list[Path]:
+    """The file of a level's name beside a recording, those in a folder `levels` there, and so in the folders around it.
+
+    No further than the repository.
+    """
+    found: list[Path] = []
+    for folder in path.parents:
+        found += [each for each in [folder / name] if name and each.is_file()]
+        found += (folder / LEVELS).glob("*.json")
+        if (folder / ".git").exists():
+            break
+    return found
+
+
+def why_untested(path: Path) -> str | None:
+    """Why a file that looks like one of ours is no test, in words; None: it is one, or looks like none."""
+    name, small = path.name, path.name.casefold()
+    if name.startswith("."):
+        return None
+    if path.is_symlink() and not path.exists():
+        is_ours = is_recording(path) or is_golden(path) or path.parent.name == LEVELS
+        return "a link to nothing" if is_ours else None
+    if is_recording(path):
+        level = path.with_name(f"{name.partition('.solution.')[0]}.json")
+        if ".solution." in name and not name.endswith(SOLUTION):
+            return f"solves no level: a solution ends in {SOLUTION}"
+        return (
+            f"solves no level: there is no {level.name} beside it" if SOLUTION in name and not level.exists() else None
+        )
+    if small.endswith((*RECORDINGS, ".replay", ".replay.json")) or _holds_recording(path):
+        return f"a recording ends in {' or '.join(RECORDINGS[:2])}"
+    if small.endswith("golden.json") and not is_golden(path):
+        return f"a golden file ends in {GOLDEN}"
+    if path.suffix != ".json" and small.endswith(".json") and says_it_is_a_level(path):
+        return "a level ends in .json"
+    return None
+
+
+def _holds_recording(path: Path) -> bool:
+    """Whether a file of another name holds a recording."""
+    if path.suffix.casefold() not in (".rec", ".gz", ".jsonl"):
+        return False
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD)
+        if head.startswith(b"\x1f\x8b"):
+            head = zlib.decompressobj(31).decompress(head, HEAD)
+    except (OSError, zlib.error):
+        return False
+    return REPLAY_FORMAT.encode() in head
+
+
 def asked_renames(config: pytest.Config) -> dict[str, str]:
     """The names that --replay-rename gives, old to new. Raises UsageError."""
     pairs = [pair.partition("=") for pair in config.getoption("--replay-rename")]
@@ -67,10 +135,13 @@ def marked(config: pytest.Config) -> list[tuple[str, str]]:
 
 def marks_of(config: pytest.Config, path: Path) -> list[str]:
     """The marks that the setting gives a file."""
-    if not path.is_relative_to(config.rootpath):
-        return []
-    name = path.relative_to(config.rootpath).as_posix()
-    return [mark for mark, pattern in marked(config) if fnmatch.fnmatchcase(name, pattern)]
+    return [mark for mark, pattern in marked(config) if fits(config, path, pattern)]
+
+
+def fits(config: pytest.Config, path: Path, pattern: str) -> bool:
+    """Whether a pattern of the setting `sandbox_marks` fits a file."""
+    root = config.rootpath
+    return path.is_relative_to(root) and fnmatch.fnmatchcase(path.relative_to(root).as_posix(), pattern)
 
 
 def is_level(path: Path) -> bool:

@@ -34,7 +34,7 @@ class ReportedItem(pytest.Item):
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """File, line and name of the test, for pytest's report."""
-        return self.path, None, self.name
+        return self.path, 0, self.name
 
 
 class RecordingTest(pytest.File):

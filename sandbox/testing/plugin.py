@@ -13,7 +13,17 @@ import pytest
 
 from sandbox.session.replay import is_recording
 from sandbox.testing.evidence import CHOICES, FIRST, runs_of
-from sandbox.testing.files import USUAL_LEVELS, asked_renames, is_golden, is_level, level_files, marked
+from sandbox.testing.files import (
+    USUAL_LEVELS,
+    asked_renames,
+    fits,
+    is_asked_level,
+    is_golden,
+    is_level,
+    level_files,
+    marked,
+    why_untested,
+)
 from sandbox.testing.items import GoldenTest, LevelTests, RecordingTest
 
 if TYPE_CHECKING:
@@ -29,6 +39,11 @@ UPDATED = "sandbox_updated"
 # Runs of one test in Python that are kept where it fails, the last ones.
 RUNS_KEPT = 3
 _RUNS: "pytest.StashKey[deque[Driver]]" = pytest.StashKey()
+# Files that look like tests and are none, with the reason; and folders that were looked at.
+_UNTESTED = pytest.StashKey[dict[str, str]]()
+_FOLDERS = pytest.StashKey[set[Path]]()
+# So many of them are listed.
+MOST_UNTESTED = 20
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -80,6 +95,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Refuse what cannot go together, and what names nothing, before anything runs."""
+    config.stash[_UNTESTED], config.stash[_FOLDERS] = {}, set()
     for line in MARKERS:
         config.addinivalue_line("markers", line)
     solver = config.getoption("--replay-solver")
@@ -104,14 +120,52 @@ def _refuse_unknown_solver(name: str) -> None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """Recordings and golden files by names; levels that the setting names, or the command line."""
+    _note_untested(parent.config, file_path)
     if is_recording(file_path):
         return RecordingTest.from_parent(parent, path=file_path)
     if is_golden(file_path):
         return GoldenTest.from_parent(parent, path=file_path)
     if file_path.suffix != ".json":
         return None
-    asked = parent.session.isinitpath(file_path) or file_path in level_files(parent.config)
+    asked = parent.session.isinitpath(file_path) or is_asked_level(parent.config, file_path)
     return LevelTests.from_parent(parent, path=file_path) if asked and is_level(file_path) else None
+
+
+def _note_untested(config: pytest.Config, path: Path) -> None:
+    """Note a file that looks like a test and is none."""
+    config.stash[_FOLDERS].add(path.parent)
+    why = why_untested(path)
+    if why is not None:
+        root = config.rootpath
+        name = path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
+        config.stash[_UNTESTED][name] = why
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Note links to nothing, which pytest passes over; and where all is collected, marks that fit nothing."""
+    seen = config.stash[_FOLDERS]
+    for folder in seen | {each for path in seen for each in path.parents if each.is_relative_to(config.rootpath)}:
+        for each in folder.iterdir():
+            if each.is_symlink() and not each.exists():
+                _note_untested(config, each)
+    if config.args_source is config.ArgsSource.ARGS:
+        return
+    for mark, pattern in marked(config):
+        if not any(fits(config, item.path, pattern) for item in items):
+            config.stash[_UNTESTED][f"{mark}: {pattern}"] = "sandbox_marks: fits no recording and no level"
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Hand what is not tested to the first process of xdist."""
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output["sandbox_untested"] = session.config.stash[_UNTESTED]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Take over what a process of xdist found that is not tested."""
+    node.config.stash[_UNTESTED].update(getattr(node, "workeroutput", {}).get("sandbox_untested", {}))
 
 
 @pytest.fixture
@@ -155,8 +209,8 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
 _updated: list[str] = []
 
 
-def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """List the recordings that were recorded again."""
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """List the recordings that were recorded again, and what looks like a test and is none."""
     if _updated:
         from sandbox.testing.replaying import grouped
 
@@ -164,3 +218,10 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
         for line in grouped(_updated):
             terminalreporter.write_line(line)
         _updated.clear()
+    untested = sorted(config.stash[_UNTESTED].items())
+    if untested:
+        terminalreporter.section("not tested")
+        for name, why in untested[:MOST_UNTESTED]:
+            terminalreporter.write_line(f"not tested: {name}: {why}")
+        if len(untested) > MOST_UNTESTED:
+            terminalreporter.write_line(f"not tested: {len(untested) - MOST_UNTESTED} more")

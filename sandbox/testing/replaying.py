@@ -2,9 +2,9 @@
 
 import functools
 import json
+import os
 import shlex
 import tempfile
-import warnings
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
@@ -29,7 +29,7 @@ from sandbox.session.replay.rerecord import (
     with_settings,
 )
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.files import Failed, asked_renames, level_files
+from sandbox.testing.files import Failed, asked_renames, level_files, levels_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -187,7 +187,7 @@ def _acceptance(config: pytest.Config, path: Path) -> str:
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
     """The level on which a recording runs instead of its own copy: one file, or its file in a folder.
 
-    Without a word about it, its file among those of `sandbox_levels`, if there is one.
+    Without a word about it, the file of its name that is nearest, or of its title.
     """
     against, set_down = config.getoption("--replay-against"), config.getini("sandbox_against")
     if (against or set_down) == OWN:
@@ -197,7 +197,7 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
     elif set_down:
         place = (config.inipath.parent if config.inipath else config.rootpath) / set_down
     else:
-        return _usual_level(sorted(level_files(config)), replay)
+        return _usual_level(config, replay)
     if not place.is_dir():
         return level_of(place)
     return level_among(sorted(place.glob("*.json")), replay, str(place))
@@ -221,20 +221,23 @@ def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
     )
 
 
-def _usual_level(files: Sequence[Path], replay: Replay) -> Level | None:
-    """The level file of a project that a recording is of; None where there is none."""
-    found, name = _fitting(files, replay), file_of(replay.level)
-    if name and not found and not _is_shipped(replay.level):
-        warnings.warn(
-            pytest.PytestWarning(
-                f"recordings of {name} ran on their own copy of it: sandbox_levels has neither this file nor the title "
-                f"{replay.level.name!r}; sandbox_against = own says that it is meant"
-            ),
-            stacklevel=1,
+def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
+    """The level file of a project that a recording is of, the nearest; None: a shipped level. Raises Failed."""
+    here, name = Path(replay.source).resolve(), file_of(replay.level)
+    found = _fitting(sorted({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}), replay)
+    if not found:
+        if not name or _is_shipped(replay.level):
+            return None
+        raise Failed(
+            f"{replay.source}: its level, {name} with the title {replay.level.name!r}, is neither beside it nor in a "
+            "folder levels there or around, nor among sandbox_levels",
+            "to run recordings on the copies that they hold: sandbox_against = own",
         )
-    if len(found) > 1 and any(replay.level == level_of(path) for path in found):
+    steps = [len(Path(os.path.relpath(path.parent, here.parent)).parts) for path in found]
+    nearest = [path for path, away in zip(found, steps, strict=True) if away == min(steps)]
+    if len(nearest) > 1 and any(replay.level == level_of(path) for path in nearest):
         return replay.level
-    return level_among(files, replay, str(found[0].parent)) if found else None
+    return level_among(nearest, replay, str(nearest[0].parent))
 
 
 def _is_shipped(level: Level) -> bool:

@@ -319,18 +319,18 @@ def test_a_test_in_python_drags_cuts_drives_and_measures(made, pytester):
     pytester.runpytest_inprocess(*LOADED).assert_outcomes(passed=2)
 
 
-def test_recordings_whose_level_is_gone_say_that_they_ran_on_their_own_copy(project):
+def test_a_recording_whose_level_is_gone_fails_unless_it_is_to_run_on_its_own_copy(project):
     level = read_level(project.path / "levels" / "rope.json")
     session = Session(level)
     session.record_to(project.path / "gone.replay.gz")
     session.advance()
     session.stop_recording()
-    assert "ran on their own copy" not in project("gone.replay.gz").stdout.str()
+    project("gone.replay.gz").assert_outcomes(passed=1)
     (project.path / "levels" / "rope.json").unlink()
-    told = project("gone.replay.gz")
-    told.assert_outcomes(passed=1, warnings=1)
-    assert "recordings of rope.json ran on their own copy of it" in told.stdout.str()
-    assert "ran on" not in project("gone.replay.gz", "--replay-against=own").stdout.str()
+    told = project("gone.replay.gz", "-p", "no:warnings")
+    told.assert_outcomes(failed=1)
+    assert "its level, rope.json with the title 'Test rope', is neither beside it nor in a" in told.stdout.str()
+    project("gone.replay.gz", "--replay-against=own").assert_outcomes(passed=1)
 
 
 def test_going_back_by_no_tick_is_a_usage_error(project):
