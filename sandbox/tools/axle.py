@@ -1,67 +1,274 @@
-"""AxleTool: a click puts an axle through what is there: two bodies turn about it, or one about a place of the world."""
+"""AxleTool: a click puts an axle through what is there: two bodies turn about it, or one about a place of the world.
+
+An axle may have a motor. It is a small wheel then, whose rim holds one body, and whose hub holds the other, or the air.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from sandbox.level.assembly.build_world import JoinedLevel
 from sandbox.physics.analysis.query import bodies_around, particle_at, shown_particles
-from sandbox.physics.arrays import Slots
+from sandbox.physics.arrays import FloatRows, Slots
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot
-from sandbox.session.commands import AddBody, AddSpring
-from sandbox.tools.tool import NOTHING, PlayTool, Point, PointerEvent, Response, Submission, Tool
+from sandbox.session.commands import AddBody, AddSpring, Command, CutSprings, Remove
+from sandbox.tools.dropping import in_pace
+from sandbox.tools.tool import NOTHING, Loop, PlayTool, Point, PointerEvent, Response, Submission, Tool
 
-# Spokes from the axle to each body, and the shortest one as a share of the pick radius.
+# The body of an axle, by its id.
+AXLE_ID = "axle"
+# Springs from an axle to each body, and the shortest one as a share of the pick radius.
 SPOKES, SHORTEST = 3, 0.2
-# The axle's radius, as a share of its shortest spoke.
-RADIUS = 0.3
+# The axle's radius, as a share of its shortest spoke, and that of a motor as a share of the mean one.
+RADIUS, MOTOR_RADIUS = 0.3, 0.5
+# Spokes of a motor, and springs from each to what it turns.
+MOTOR_SPOKES, TIES = 6, 2
+# A thing is round whose rim is nowhere so much nearer to its middle than elsewhere, in so many directions; an axle snaps
+# to the middle from within this share of its radius. What is so many times as long as wide is a plank.
+ROUND, DIRECTIONS, SNAP, LONG = 0.25, 16, 0.6, 2.5
+# A motor's speed at the rim of what it turns [m/s], its fastest [rad/s], and what it can push for each kg [N/kg].
+RIM_SPEED, FASTEST, PUSH = 3.0, 15.0, 3.0
+# Its keys: ahead, which is to the right on the ground, and back.
+KEYS = ("d", "a")
+CORNERS = 24
 DIGITS, DECIMALS = 6, 4
 NOTHING_THERE = "Click on a thing: the axle goes through it."
 TOO_FEW = "This is too small for an axle. Hold it with the pin tool (P)."
+AIR, RUBS = "the air", ". They rub: draw one over the other, and they pass"
+
+
+class Thing(NamedTuple):
+    """A body that an axle goes through: its owner, its particles, its middle [m], and its radius [m] if it is round."""
+
+    owner: int
+    slots: Slots
+    middle: Point
+    radius: float | None
+    word: str
+
+
+class Joint(NamedTuple):
+    """Where an axle goes [m], the thing that it turns, and what it is mounted on; None: the air."""
+
+    place: Point
+    turned: Thing
+    mount: Thing | None
+
+    def words(self, snapshot: Snapshot) -> str:
+        """What it joins, and whether that cannot turn freely."""
+        rubs = self.mount is not None and _touch(snapshot, self.turned.slots[0], self.mount.slots[0])
+        return f"{self.turned.word} to {AIR if self.mount is None else self.mount.word}{RUBS if rubs else ''}"
+
+
+class Axle(NamedTuple):
+    """An axle of a run: its particles, the springs that tie it, and the owners of what they hold, the turned one first."""
+
+    slots: Slots
+    ties: Slots
+    owners: list[int]
+    has_motor: bool
 
 
 class AxleTool(Tool):
-    """Join the two bodies under a click by a hinge there, or one body to the world. Each axle is a gesture."""
+    """Join the two bodies under a click by a hinge there, or one body to the world; on an axle: a motor, or none.
+
+    Each is a gesture.
+    """
+
+    is_held = False
+
+    def __init__(self, new_gesture: Callable[[], int]) -> None:
+        super().__init__(new_gesture)
+        self._says, self._ring = "", list[Point]()
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Put an axle at the place of a press."""
         if event.kind != "down" or event.button != 1:
             return NOTHING
-        front = particle_at(snapshot, event.position, event.pick_radius)
-        if front is None:
-            self._refusal = NOTHING_THERE
-            return NOTHING
-        owners = dict.fromkeys([int(snapshot.owner[front]), *bodies_around(snapshot, event.position).tolist()])
-        found = [_spokes(snapshot, owner, event) for owner in owners][:2]
-        self._refusal = TOO_FEW if min(map(len, found)) < 2 else ""
-        if self._refusal:
-            return NOTHING
-        tied = np.concatenate(found)
-        x, y = (round(value, DECIMALS) for value in event.position)
-        reach = float(lengths(snapshot.position[tied] - np.array([x, y])).min())
-        hub = {
-            "type": "mesh",
-            "id": "axle",
-            "particles": [[x, y]],
-            "masses": [_rounded(float(snapshot.mass[tied].mean()))],
-            "pinned": [0] if len(found) == 1 else [],
-            # It lies inside of what it holds.
-            "collides": [],
-            "particle_radius": _rounded(RADIUS * reach),
-        }
-        first, gesture = len(snapshot.mass), self._new_gesture()
-        commands = [AddBody(hub), *(AddSpring(first, slot, stiffness=1.0, damping=1.0) for slot in tied.tolist())]
+        axle = axle_at(snapshot, event.position, event.pick_radius)
+        if axle is not None:
+            commands = refitted(snapshot, axle, not axle.has_motor)
+        else:
+            joint = joint_at(snapshot, event.position, event.pick_radius)
+            self._refusal = joint if isinstance(joint, str) else ""
+            if isinstance(joint, str):
+                return NOTHING
+            commands = _added(snapshot, joint, SHORTEST * event.pick_radius, has_motor=False)
+        gesture = self._new_gesture()
         return Response(tuple(Submission(command, gesture) for command in commands))
 
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
         """A particle of the body that an axle would go through."""
-        return particle_at(snapshot, place, within)
+        self._says, self._ring = "", []
+        axle = axle_at(snapshot, place, within)
+        if axle is not None:
+            self._says = "Click: loose" if axle.has_motor else f"Click: a motor ({KEYS[1].upper()}, {KEYS[0].upper()})"
+            return int(axle.slots[0])
+        joint = joint_at(snapshot, place, within)
+        if isinstance(joint, str):
+            return None
+        self._says, (x, y), self._refusal = joint.words(snapshot), joint.place, ""
+        turns = [math.tau * k / CORNERS for k in range(CORNERS + 1)]
+        self._ring = [(x + 0.5 * within * math.cos(turn), y + 0.5 * within * math.sin(turn)) for turn in turns]
+        return None
+
+    @property
+    def ghost(self) -> list[Loop]:
+        """A ring where the axle goes [m]."""
+        return [self._ring] if self._ring else []
+
+    @property
+    def hint(self) -> str:
+        """What a click would join, or why the last press did nothing."""
+        return self._refusal or self._says
 
 
-def _spokes(snapshot: Snapshot, owner: int, event: PointerEvent) -> Slots:
-    """The particles of a body that are nearest to a press, and yet not at it."""
-    own = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == owner))
-    distance = lengths(snapshot.position[own] - np.array(event.position))
-    own, distance = own[distance > (least := SHORTEST * event.pick_radius)], distance[distance > least]
-    return np.asarray(own[np.argsort(distance, kind="stable")[:SPOKES]])
+def joint_at(snapshot: Snapshot, place: Point, within: float) -> Joint | str:
+    """What an axle at a place [m] joins; or why there is none. It snaps to the middle of a round thing."""
+    front = particle_at(snapshot, place, within)
+    if front is None:
+        return NOTHING_THERE
+    owners = dict.fromkeys([int(snapshot.owner[front]), *bodies_around(snapshot, place).tolist()])
+    here = [thing for owner in owners if (thing := _thing(snapshot, owner)) is not None]
+    if not here:
+        return TOO_FEW
+    snapping = [each for each in here if each.radius and math.dist(each.middle, place) < SNAP * each.radius]
+    if not snapping:
+        turned, mount = here[0], here[1] if len(here) > 1 else None
+        return Joint(_rounded_place(place), turned, mount)
+    # Of two wheels the smaller one turns on the larger.
+    turned = min(snapping, key=lambda each: each.radius or 0.0)
+    others = [each for each in here if each is not turned] or _below(snapshot, turned)
+    return Joint(_rounded_place(turned.middle), turned, others[0] if others else None)
+
+
+def axle_at(snapshot: Snapshot, place: Point, within: float) -> Axle | None:
+    """The axle at a place [m]."""
+    for joined in snapshot.equipment.joined:
+        slots = np.arange(joined.first_particle, joined.first_particle + len(joined.particle_names))
+        is_axle = isinstance(joined, JoinedLevel) and [body.id for body in joined.level.bodies] == [AXLE_ID]
+        if not is_axle or not snapshot.particle_active[slots].all():
+            continue
+        if math.dist(snapshot.position[slots[0]].tolist(), place) < within:
+            a, b = (np.isin(ends, slots) for ends in (snapshot.particle_a, snapshot.particle_b))
+            ties = np.flatnonzero(snapshot.spring_active & (a != b) & (snapshot.material >= 0))
+            held = np.where(a[ties], snapshot.particle_b[ties], snapshot.particle_a[ties])
+            return Axle(slots, ties, list(dict.fromkeys(snapshot.owner[held].tolist())), len(slots) > 1)
+    return None
+
+
+def taken_out(axle: Axle) -> list[Command]:
+    """The commands that take an axle out."""
+    cut = [CutSprings(tuple(axle.ties.tolist()))] if len(axle.ties) else []
+    return [*cut, Remove(particle=int(axle.slots[0]))]
+
+
+def refitted(snapshot: Snapshot, axle: Axle, has_motor: bool) -> list[Command]:
+    """The commands that put an axle with a motor, or without one, in the place of an axle."""
+    things = [thing for owner in axle.owners if (thing := _thing(snapshot, owner)) is not None]
+    if not things:
+        return []
+    joint = Joint(
+        _rounded_place(tuple(snapshot.position[axle.slots[0]].tolist())), things[0], things[1] if things[1:] else None
+    )
+    return [*taken_out(axle), *_added(snapshot, joint, 0.0, has_motor)]
+
+
+def _added(snapshot: Snapshot, joint: Joint, least: float, has_motor: bool) -> list[Command]:
+    """The commands that add an axle with springs longer than the least [m]."""
+    things = [each for each in (joint.turned, joint.mount) if each is not None]
+    tied = [_nearest(snapshot, thing.slots, joint.place, SPOKES, least) for thing in things]
+    together = np.concatenate(tied)
+    distances = lengths(snapshot.position[together] - np.array(joint.place))
+    mass, is_pinned, first = float(snapshot.mass[together].mean()), len(things) == 1, len(snapshot.mass)
+    common = {"id": AXLE_ID, "collides": []}
+    if not has_motor:
+        hub = {
+            "type": "mesh", "particles": [list(joint.place)], "masses": [_rounded(mass)],
+            "pinned": [0] if is_pinned else [], "particle_radius": _rounded(RADIUS * float(distances.min())),
+        }  # fmt: skip
+        ends = [(first, slot) for slot in together.tolist()]
+        return [AddBody(hub | common), *(_tie(*pair) for pair in ends)]
+    radius = MOTOR_RADIUS * float(distances.mean())
+    turns = [math.tau * k / MOTOR_SPOKES for k in range(MOTOR_SPOKES)]
+    x, y = joint.place
+    rim = [(x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns]
+    ends = [
+        (first + 1 + MOTOR_SPOKES + k, slot)
+        for k, place in enumerate(rim)
+        for slot in _nearest(snapshot, joint.turned.slots, place, TIES, 0.0).tolist()
+    ]
+    ends += [(first, slot) for slot in (tied[1].tolist() if tied[1:] else ())]
+    wheel = {
+        "type": "wheel", "position": list(joint.place), "radius": _rounded(radius), "thickness": _rounded(radius / 2.0),
+        "segments": MOTOR_SPOKES, "particle_mass": _rounded(mass / MOTOR_SPOKES), "hub_mass": _rounded(mass),
+        "pin": ["hub"] if is_pinned else [], "particle_radius": _rounded(RADIUS * radius), "material": "drawn motor",
+        "motor": _motor(snapshot, things, joint.place),
+    }  # fmt: skip
+    body = AddBody(wheel | common, materials={"drawn motor": {"stiffness": 1.0, "damping": 1.0}})
+    return [in_pace(body, snapshot.settings.tick_rate), *(_tie(*pair) for pair in ends)]
+
+
+def _motor(snapshot: Snapshot, things: list[Thing], place: Point) -> dict[str, Any]:
+    """A motor that drives the first of some things about a place [m], on the ground as fast as a child runs."""
+    reach = float(lengths(snapshot.position[things[0].slots] - np.array(place)).max())
+    weight = sum(float(snapshot.mass[thing.slots].sum()) for thing in things)
+    ahead, back = KEYS
+    speed, torque = -min(RIM_SPEED / reach, FASTEST), PUSH * weight * reach
+    return {"key": ahead, "reverse_key": back, "speed": _rounded(speed), "torque": _rounded(torque)}
+
+
+def _tie(own: int, slot: int) -> AddSpring:
+    return AddSpring(own, slot, stiffness=1.0, damping=1.0)
+
+
+def _nearest(snapshot: Snapshot, slots: Slots, place: Point, count: int, least: float) -> Slots:
+    """The particles that are nearest to a place [m], and farther than the least [m]."""
+    distance = lengths(snapshot.position[slots] - np.array(place))
+    far = np.flatnonzero(distance > max(least, 1e-6))
+    return np.asarray(slots[far[np.argsort(distance[far], kind="stable")[:count]]])
+
+
+def _thing(snapshot: Snapshot, owner: int) -> Thing | None:
+    """The body of an owner; None where it has too few particles for an axle."""
+    slots = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == owner))
+    if len(slots) <= SPOKES:
+        return None
+    places = snapshot.position[slots]
+    middle, radius = _round_form(places)
+    spread = np.sqrt(np.linalg.eigvalsh(np.cov(places.T)))
+    is_long = spread[1] > LONG * spread[0]
+    return Thing(owner, slots, middle, radius, "wheel" if radius else "plank" if is_long else "thing")
+
+
+def _round_form(places: FloatRows) -> tuple[Point, float | None]:
+    """The middle [m] of particles, and their radius [m] if their rim is round."""
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
+    turns = np.arange(DIRECTIONS) * (math.tau / DIRECTIONS)
+    reach = ((places - middle) @ np.array([np.cos(turns), np.sin(turns)])).max(axis=0)
+    x, y = middle.tolist()
+    return (x, y), float(reach.max()) if reach.min() > (1.0 - ROUND) * reach.max() else None
+
+
+def _below(snapshot: Snapshot, wheel: Thing) -> list[Thing]:
+    """The things that a wheel lies over without touching them, what it covers most first."""
+    around = [bodies_around(snapshot, (x, y)) for x, y in snapshot.position[wheel.slots].tolist()]
+    owners, counts = np.unique(np.concatenate(around), return_counts=True)
+    found = [_thing(snapshot, int(owner)) for owner in owners[np.argsort(-counts, kind="stable")] if owner != wheel.owner]
+    return [each for each in found if each is not None and not _touch(snapshot, wheel.slots[0], each.slots[0])]
+
+
+def _touch(snapshot: Snapshot, p: int, q: int) -> bool:
+    """Whether the bodies of two particles touch each other."""
+    group, collides = snapshot.group, snapshot.collides
+    return bool(collides[p] & group[q]) and bool(collides[q] & group[p])
+
+
+def _rounded_place(place: Point) -> Point:
+    return round(place[0], DECIMALS), round(place[1], DECIMALS)
 
 
 def _rounded(value: float) -> float:

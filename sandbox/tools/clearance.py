@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.analysis.query import shown_particles
+from sandbox.physics.analysis.query import bodies_around, shown_particles
 from sandbox.physics.arrays import FloatRows
 from sandbox.physics.geometry.segment import doubled_areas, signed_area, winding_number
 from sandbox.physics.snapshot import Snapshot
@@ -18,21 +18,26 @@ MOST_LIFT, STEPS, HALVINGS = 2.0, 16, 6
 LEAST_HEIGHT = 0.1
 # A part may reach so far into what it stands on [share of its height]: it is not drawn to the very rim.
 SLACK = 0.02
+# A drawn body lies over another of which it covers this share, or which covers this share of it; less is a stroke that
+# runs over a little.
+COVERED = 0.1
 # Sides of a part and of the terrain that are looked at, at most: beyond them every drop has room.
 MOST_PAIRS = 400_000
 
 Mask = NDArray[np.bool_]
 
 
-def lift(loops: Sequence[Loop], snapshot: Snapshot) -> float | None:
+def lift(loops: Sequence[Loop], snapshot: Snapshot, among: Mask | None = None) -> float | None:
     """How far [m] a part has to go up to touch nothing; None: it would have no room there either.
 
-    loops [m]: its outline; lines that do not end where they begin have no inside.
+    loops [m]: its outline; lines that do not end where they begin have no inside. among (n,): the particles that it may
+    not touch; None: all.
     """
     a, b = _sides(loops)
     width, height = (a.max(axis=0) - a.min(axis=0)).tolist()
     height = max(height, width * LEAST_HEIGHT)
-    obstacles = _Obstacles(snapshot, a, height, is_closed=all(loop[0] == loop[-1] for loop in loops))
+    shown = shown_particles(snapshot) if among is None else among
+    obstacles = _Obstacles(snapshot, shown, a, height, is_closed=all(loop[0] == loop[-1] for loop in loops))
     if not obstacles.hits(a, b):
         return 0.0
     step = height / STEPS
@@ -44,6 +49,34 @@ def lift(loops: Sequence[Loop], snapshot: Snapshot) -> float | None:
                 low, high = (middle, high) if obstacles.hits(*_raised(a, b, middle)) else (low, middle)
             return high
     return None
+
+
+def covered(corners: Loop, places: FloatRows, snapshot: Snapshot) -> list[int]:
+    """Owners of the bodies that a drawn body lies over, rather than beside; corners [m]: its outline.
+
+    places [m] (n, 2): evenly inside of it.
+    """
+    if not len(snapshot.mass):
+        return []
+    around = [bodies_around(snapshot, (x, y)) for x, y in places.tolist()]
+    shares: dict[int, float] = {
+        int(owner): count / len(places) for owner, count in zip(*np.unique(np.concatenate(around), return_counts=True), strict=True)
+    }
+    a = np.array(corners)
+    b, shown = np.roll(a, -1, axis=0), np.flatnonzero(shown_particles(snapshot))
+    inside = [slot for slot in shown.tolist() if winding_number(snapshot.position[slot], a, b) != 0]
+    for owner, count in zip(*np.unique(snapshot.owner[inside], return_counts=True), strict=True):
+        share = count / np.count_nonzero(snapshot.owner[shown] == owner)
+        shares[int(owner)] = max(shares.get(int(owner), 0.0), share)
+    return [owner for owner, share in sorted(shares.items()) if share >= COVERED]
+
+
+def passable(snapshot: Snapshot, owner: int) -> list[int]:
+    """A particle of a body that another may pass, as it is alone in its collision group; else none."""
+    own = snapshot.particle_active & (snapshot.owner == owner)
+    groups = np.unique(snapshot.group[own])
+    alone = not np.isin(snapshot.group[snapshot.particle_active & ~own], groups).any()
+    return np.flatnonzero(own)[:1].tolist() if alone and len(groups) == 1 else []
 
 
 def _sides(loops: Sequence[Loop]) -> tuple[FloatRows, FloatRows]:
@@ -63,10 +96,9 @@ def _raised(a: FloatRows, b: FloatRows, by: float) -> tuple[FloatRows, FloatRows
 class _Obstacles:
     """The obstacles that a part with sides from a on may hit within the reach of its lift."""
 
-    def __init__(self, snapshot: Snapshot, a: FloatRows, height: float, is_closed: bool) -> None:
+    def __init__(self, snapshot: Snapshot, shown: Mask, a: FloatRows, height: float, is_closed: bool) -> None:
         self._is_closed = is_closed
         low, high = a.min(axis=0), a.max(axis=0) + np.array([0.0, MOST_LIFT * height])
-        shown = shown_particles(snapshot)
         position, radius = snapshot.position[shown], snapshot.radius[shown]
         with np.errstate(invalid="ignore"):
             near = np.all((position + radius[:, None] >= low) & (position - radius[:, None] <= high), axis=1)

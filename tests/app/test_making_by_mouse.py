@@ -67,7 +67,7 @@ def test_a_jelly_is_drawn_hung_by_a_rope_softened_and_cut_and_every_step_undone(
     stroke(player, (0.0, 3.1), (0.0, 4.0), (0.0, 5.0))
     player.key(pygame.K_ESCAPE)
     open_menu(player, 0.0, 2.5)
-    assert rows(player)[:5] == ["Make it jelly", "Make it soft", "Make it firm", "Half as heavy", "Twice as heavy"]
+    assert rows(player)[:5] == [f"Make it {word}" for word in ("jelly", "soft", "firm", "hard", "rigid")]
     take(player, "Make it soft")
     player.key(pygame.K_c)
     stroke(player, (-0.5, 4.0), (0.5, 4.01), (0.6, 4.0))
