@@ -4,7 +4,7 @@ An axle may have a motor. It is a small wheel then, whose rim holds one body, an
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,22 +18,23 @@ from sandbox.session.commands import AddBody, AddSpring, Command, CutSprings, Re
 from sandbox.tools.dropping import in_pace
 from sandbox.tools.tool import NOTHING, Loop, PlayTool, Point, PointerEvent, Response, Submission, Tool
 
-# The body of an axle, by its id.
-AXLE_ID = "axle"
+# The body of an axle, by its id, and what that of a motor is of.
+AXLE_ID, MOTOR_STUFF = "axle", "drawn motor"
 # Springs from an axle to each body, and the shortest one as a share of the pick radius.
 SPOKES, SHORTEST = 3, 0.2
 # The axle's radius, as a share of its shortest spoke, and that of a motor as a share of the mean one.
 RADIUS, MOTOR_RADIUS = 0.3, 0.5
 # Spokes of a motor, and springs from each to what it turns.
 MOTOR_SPOKES, TIES = 6, 2
-# A thing is round whose rim is nowhere so much nearer to its middle than elsewhere, in so many directions; an axle snaps
-# to the middle from within this share of its radius. What is so many times as long as wide is a plank.
-ROUND, DIRECTIONS, SNAP, LONG = 0.25, 16, 0.6, 2.5
+# A thing is round whose rim is nowhere so much nearer to its middle than elsewhere, in so many directions; an axle
+# snaps to the middle from within this share of its radius. What is so many times as long as wide is a plank.
+ROUND, DIRECTIONS, SNAP, LONG = 0.25, 8, 0.6, 2.5
 # A motor's speed at the rim of what it turns [m/s], its fastest [rad/s], and what it can push for each kg [N/kg].
-RIM_SPEED, FASTEST, PUSH = 3.0, 15.0, 3.0
+RIM_SPEED, FASTEST, PUSH = 3.0, 15.0, 8.0
 # Its keys: ahead, which is to the right on the ground, and back.
 KEYS = ("d", "a")
-CORNERS = 24
+# Corners of the ring that shows an axle, and places of a wheel at which what it lies over is looked for, or a few more.
+CORNERS, SAMPLES = 24, 16
 DIGITS, DECIMALS = 6, 4
 NOTHING_THERE = "Click on a thing: the axle goes through it."
 TOO_FEW = "This is too small for an axle. Hold it with the pin tool (P)."
@@ -50,30 +51,32 @@ class Thing(NamedTuple):
     word: str
 
 
-class Joint(NamedTuple):
-    """Where an axle goes [m], the thing that it turns, and what it is mounted on; None: the air."""
+class Hinge(NamedTuple):
+    """Where an axle goes [m], the things that turn about it, the one that a motor turns first, and whether it stays."""
 
     place: Point
-    turned: Thing
-    mount: Thing | None
+    things: Sequence[Thing]
+    is_pinned: bool
 
     def words(self, snapshot: Snapshot) -> str:
         """What it joins, and whether that cannot turn freely."""
-        rubs = self.mount is not None and _touch(snapshot, self.turned.slots[0], self.mount.slots[0])
-        return f"{self.turned.word} to {AIR if self.mount is None else self.mount.word}{RUBS if rubs else ''}"
+        first, *others = self.things
+        rubs = any(_touch(snapshot, first.slots[0], other.slots[0]) for other in others)
+        return f"{first.word} to {' and '.join(other.word for other in others) or AIR}{RUBS if rubs else ''}"
 
 
 class Axle(NamedTuple):
-    """An axle of a run: its particles, the springs that tie it, and the owners of what they hold, the turned one first."""
+    """An axle of a run: its particles, the springs that tie it, and whom they hold, the one that is turned first."""
 
     slots: Slots
     ties: Slots
     owners: list[int]
     has_motor: bool
+    is_pinned: bool
 
 
 class AxleTool(Tool):
-    """Join the two bodies under a click by a hinge there, or one body to the world; on an axle: a motor, or none.
+    """Join the bodies under a click by a hinge there, or one body to the world; on an axle: a motor, or none.
 
     Each is a gesture.
     """
@@ -92,11 +95,11 @@ class AxleTool(Tool):
         if axle is not None:
             commands = refitted(snapshot, axle, not axle.has_motor)
         else:
-            joint = joint_at(snapshot, event.position, event.pick_radius)
-            self._refusal = joint if isinstance(joint, str) else ""
-            if isinstance(joint, str):
+            hinge = hinge_at(snapshot, event.position, event.pick_radius)
+            self._refusal = hinge if isinstance(hinge, str) else ""
+            if isinstance(hinge, str):
                 return NOTHING
-            commands = _added(snapshot, joint, SHORTEST * event.pick_radius, has_motor=False)
+            commands = _added(snapshot, hinge, SHORTEST * event.pick_radius, has_motor=False)
         gesture = self._new_gesture()
         return Response(tuple(Submission(command, gesture) for command in commands))
 
@@ -107,10 +110,10 @@ class AxleTool(Tool):
         if axle is not None:
             self._says = "Click: loose" if axle.has_motor else f"Click: a motor ({KEYS[1].upper()}, {KEYS[0].upper()})"
             return int(axle.slots[0])
-        joint = joint_at(snapshot, place, within)
-        if isinstance(joint, str):
+        hinge = hinge_at(snapshot, place, within)
+        if isinstance(hinge, str):
             return None
-        self._says, (x, y), self._refusal = joint.words(snapshot), joint.place, ""
+        self._says, (x, y), self._refusal = hinge.words(snapshot), hinge.place, ""
         turns = [math.tau * k / CORNERS for k in range(CORNERS + 1)]
         self._ring = [(x + 0.5 * within * math.cos(turn), y + 0.5 * within * math.sin(turn)) for turn in turns]
         return None
@@ -126,23 +129,23 @@ class AxleTool(Tool):
         return self._refusal or self._says
 
 
-def joint_at(snapshot: Snapshot, place: Point, within: float) -> Joint | str:
+def hinge_at(snapshot: Snapshot, place: Point, within: float) -> Hinge | str:
     """What an axle at a place [m] joins; or why there is none. It snaps to the middle of a round thing."""
     front = particle_at(snapshot, place, within)
     if front is None:
         return NOTHING_THERE
-    owners = dict.fromkeys([int(snapshot.owner[front]), *bodies_around(snapshot, place).tolist()])
-    here = [thing for owner in owners if (thing := _thing(snapshot, owner)) is not None]
+    owners = {int(snapshot.owner[front]), *bodies_around(snapshot, place).tolist()}
+    # What was made later lies before what was there.
+    here = [thing for owner in sorted(owners, reverse=True) if (thing := _thing(snapshot, owner)) is not None]
     if not here:
         return TOO_FEW
-    snapping = [each for each in here if each.radius and math.dist(each.middle, place) < SNAP * each.radius]
-    if not snapping:
-        turned, mount = here[0], here[1] if len(here) > 1 else None
-        return Joint(_rounded_place(place), turned, mount)
     # Of two wheels the smaller one turns on the larger.
-    turned = min(snapping, key=lambda each: each.radius or 0.0)
-    others = [each for each in here if each is not turned] or _below(snapshot, turned)
-    return Joint(_rounded_place(turned.middle), turned, others[0] if others else None)
+    wheels = [each for each in here if each.radius and math.dist(each.middle, place) < SNAP * each.radius]
+    turned = min(wheels, key=lambda each: each.radius or 0.0, default=here[0])
+    if wheels or math.dist(turned.middle, place) < within:
+        place = turned.middle
+    others = [each for each in here if each is not turned] or (_below(snapshot, turned) if wheels else [])
+    return Hinge(_rounded_place(place), [turned, *others], not others)
 
 
 def axle_at(snapshot: Snapshot, place: Point, within: float) -> Axle | None:
@@ -156,7 +159,8 @@ def axle_at(snapshot: Snapshot, place: Point, within: float) -> Axle | None:
             a, b = (np.isin(ends, slots) for ends in (snapshot.particle_a, snapshot.particle_b))
             ties = np.flatnonzero(snapshot.spring_active & (a != b) & (snapshot.material >= 0))
             held = np.where(a[ties], snapshot.particle_b[ties], snapshot.particle_a[ties])
-            return Axle(slots, ties, list(dict.fromkeys(snapshot.owner[held].tolist())), len(slots) > 1)
+            owners, hub = list(dict.fromkeys(snapshot.owner[held].tolist())), int(slots[0])
+            return Axle(slots, ties, owners, len(slots) > 1, bool(snapshot.inverse_mass[hub] == 0.0))
     return None
 
 
@@ -171,51 +175,48 @@ def refitted(snapshot: Snapshot, axle: Axle, has_motor: bool) -> list[Command]:
     things = [thing for owner in axle.owners if (thing := _thing(snapshot, owner)) is not None]
     if not things:
         return []
-    joint = Joint(
-        _rounded_place(tuple(snapshot.position[axle.slots[0]].tolist())), things[0], things[1] if things[1:] else None
-    )
-    return [*taken_out(axle), *_added(snapshot, joint, 0.0, has_motor)]
+    hinge = Hinge(_rounded_place(tuple(snapshot.position[axle.slots[0]].tolist())), things, axle.is_pinned)
+    return [*taken_out(axle), *_added(snapshot, hinge, 0.0, has_motor)]
 
 
-def _added(snapshot: Snapshot, joint: Joint, least: float, has_motor: bool) -> list[Command]:
+def _added(snapshot: Snapshot, hinge: Hinge, least: float, has_motor: bool) -> list[Command]:
     """The commands that add an axle with springs longer than the least [m]."""
-    things = [each for each in (joint.turned, joint.mount) if each is not None]
-    tied = [_nearest(snapshot, thing.slots, joint.place, SPOKES, least) for thing in things]
+    tied = [_nearest(snapshot, thing.slots, hinge.place, SPOKES, least) for thing in hinge.things]
     together = np.concatenate(tied)
-    distances = lengths(snapshot.position[together] - np.array(joint.place))
-    mass, is_pinned, first = float(snapshot.mass[together].mean()), len(things) == 1, len(snapshot.mass)
+    distances = lengths(snapshot.position[together] - np.array(hinge.place))
+    mass, first = float(snapshot.mass[together].mean()), len(snapshot.mass)
     common = {"id": AXLE_ID, "collides": []}
     if not has_motor:
         hub = {
-            "type": "mesh", "particles": [list(joint.place)], "masses": [_rounded(mass)],
-            "pinned": [0] if is_pinned else [], "particle_radius": _rounded(RADIUS * float(distances.min())),
+            "type": "mesh", "particles": [list(hinge.place)], "masses": [_rounded(mass)],
+            "pinned": [0] if hinge.is_pinned else [], "particle_radius": _rounded(RADIUS * float(distances.min())),
         }  # fmt: skip
         ends = [(first, slot) for slot in together.tolist()]
         return [AddBody(hub | common), *(_tie(*pair) for pair in ends)]
     radius = MOTOR_RADIUS * float(distances.mean())
     turns = [math.tau * k / MOTOR_SPOKES for k in range(MOTOR_SPOKES)]
-    x, y = joint.place
+    x, y = hinge.place
     rim = [(x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns]
     ends = [
         (first + 1 + MOTOR_SPOKES + k, slot)
         for k, place in enumerate(rim)
-        for slot in _nearest(snapshot, joint.turned.slots, place, TIES, 0.0).tolist()
+        for slot in _nearest(snapshot, hinge.things[0].slots, place, TIES, 0.0).tolist()
     ]
-    ends += [(first, slot) for slot in (tied[1].tolist() if tied[1:] else ())]
+    ends += [(first, slot) for slots in tied[1:] for slot in slots.tolist()]
     wheel = {
-        "type": "wheel", "position": list(joint.place), "radius": _rounded(radius), "thickness": _rounded(radius / 2.0),
+        "type": "wheel", "position": list(hinge.place), "radius": _rounded(radius), "thickness": _rounded(radius / 2.0),
         "segments": MOTOR_SPOKES, "particle_mass": _rounded(mass / MOTOR_SPOKES), "hub_mass": _rounded(mass),
-        "pin": ["hub"] if is_pinned else [], "particle_radius": _rounded(RADIUS * radius), "material": "drawn motor",
-        "motor": _motor(snapshot, things, joint.place),
+        "pin": ["hub"] if hinge.is_pinned else [], "particle_radius": _rounded(RADIUS * radius),
+        "material": MOTOR_STUFF, "motor": _motor(snapshot, hinge),
     }  # fmt: skip
-    body = AddBody(wheel | common, materials={"drawn motor": {"stiffness": 1.0, "damping": 1.0}})
+    body = AddBody(wheel | common, materials={MOTOR_STUFF: {"stiffness": 1.0, "damping": 1.0}})
     return [in_pace(body, snapshot.settings.tick_rate), *(_tie(*pair) for pair in ends)]
 
 
-def _motor(snapshot: Snapshot, things: list[Thing], place: Point) -> dict[str, Any]:
-    """A motor that drives the first of some things about a place [m], on the ground as fast as a child runs."""
-    reach = float(lengths(snapshot.position[things[0].slots] - np.array(place)).max())
-    weight = sum(float(snapshot.mass[thing.slots].sum()) for thing in things)
+def _motor(snapshot: Snapshot, hinge: Hinge) -> dict[str, Any]:
+    """A motor that turns the first of the things of a hinge, on the ground as fast as a child runs."""
+    reach = float(lengths(snapshot.position[hinge.things[0].slots] - np.array(hinge.place)).max())
+    weight = sum(float(snapshot.mass[thing.slots].sum()) for thing in hinge.things)
     ahead, back = KEYS
     speed, torque = -min(RIM_SPEED / reach, FASTEST), PUSH * weight * reach
     return {"key": ahead, "reverse_key": back, "speed": _rounded(speed), "torque": _rounded(torque)}
@@ -247,18 +248,24 @@ def _thing(snapshot: Snapshot, owner: int) -> Thing | None:
 def _round_form(places: FloatRows) -> tuple[Point, float | None]:
     """The middle [m] of particles, and their radius [m] if their rim is round."""
     middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
-    turns = np.arange(DIRECTIONS) * (math.tau / DIRECTIONS)
-    reach = ((places - middle) @ np.array([np.cos(turns), np.sin(turns)])).max(axis=0)
+    turns, off = np.arange(DIRECTIONS) * (math.tau / DIRECTIONS), places - middle
+    along, far = off @ np.array([np.cos(turns), np.sin(turns)]), lengths(off)
+    # How far it reaches each way, and how far out its rim is there: a square and a cross are not round.
+    reach = along.max(axis=0)
+    rim = np.where(along >= math.cos(math.pi / DIRECTIONS) * far[:, None], far[:, None], 0.0).max(axis=0)
     x, y = middle.tolist()
-    return (x, y), float(reach.max()) if reach.min() > (1.0 - ROUND) * reach.max() else None
+    is_round = min(reach.min(), rim.min()) > (1.0 - ROUND) * reach.max()
+    return (x, y), float(reach.max()) if is_round else None
 
 
 def _below(snapshot: Snapshot, wheel: Thing) -> list[Thing]:
-    """The things that a wheel lies over without touching them, what it covers most first."""
-    around = [bodies_around(snapshot, (x, y)) for x, y in snapshot.position[wheel.slots].tolist()]
+    """The thing that a wheel lies over, rather one that it passes, and rather one that it covers most."""
+    some = wheel.slots[:: max(1, len(wheel.slots) // SAMPLES)]
+    around = [bodies_around(snapshot, (x, y)) for x, y in snapshot.position[some].tolist()]
     owners, counts = np.unique(np.concatenate(around), return_counts=True)
-    found = [_thing(snapshot, int(owner)) for owner in owners[np.argsort(-counts, kind="stable")] if owner != wheel.owner]
-    return [each for each in found if each is not None and not _touch(snapshot, wheel.slots[0], each.slots[0])]
+    ranked = owners[np.argsort(-counts, kind="stable")].tolist()
+    there = [each for owner in ranked if owner != wheel.owner and (each := _thing(snapshot, owner)) is not None]
+    return sorted(there, key=lambda each: _touch(snapshot, wheel.slots[0], each.slots[0]))[:1]
 
 
 def _touch(snapshot: Snapshot, p: int, q: int) -> bool:

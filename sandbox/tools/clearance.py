@@ -1,5 +1,6 @@
 """Clearance: how far a part has to be lifted so that it stands on what is below it, or that it has no room."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import bodies_around, shown_particles
 from sandbox.physics.arrays import FloatRows
-from sandbox.physics.geometry.segment import doubled_areas, signed_area, winding_number
+from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas, signed_area, winding_number
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.tool import Loop
 
@@ -19,8 +20,8 @@ LEAST_HEIGHT = 0.1
 # A part may reach so far into what it stands on [share of its height]: it is not drawn to the very rim.
 SLACK = 0.02
 # A drawn body lies over another of which it covers this share, or which covers this share of it; less is a stroke that
-# runs over a little.
-COVERED = 0.1
+# runs over a little. Of the other counts what lies deeper than this share of the drawn one's size.
+COVERED, DEEP = 0.1, 0.1
 # Sides of a part and of the terrain that are looked at, at most: beyond them every drop has room.
 MOST_PAIRS = 400_000
 
@@ -56,27 +57,27 @@ def covered(corners: Loop, places: FloatRows, snapshot: Snapshot) -> list[int]:
 
     places [m] (n, 2): evenly inside of it.
     """
-    if not len(snapshot.mass):
-        return []
-    around = [bodies_around(snapshot, (x, y)) for x, y in places.tolist()]
-    shares: dict[int, float] = {
-        int(owner): count / len(places) for owner, count in zip(*np.unique(np.concatenate(around), return_counts=True), strict=True)
-    }
-    a = np.array(corners)
-    b, shown = np.roll(a, -1, axis=0), np.flatnonzero(shown_particles(snapshot))
-    inside = [slot for slot in shown.tolist() if winding_number(snapshot.position[slot], a, b) != 0]
-    for owner, count in zip(*np.unique(snapshot.owner[inside], return_counts=True), strict=True):
-        share = count / np.count_nonzero(snapshot.owner[shown] == owner)
-        shares[int(owner)] = max(shares.get(int(owner), 0.0), share)
+    around = [owner for x, y in places.tolist() for owner in bodies_around(snapshot, (x, y)).tolist()]
+    shares = {owner: around.count(owner) / len(places) for owner in around}
+    a, shown = np.array(corners), np.flatnonzero(shown_particles(snapshot))
+    b = np.roll(a, -1, axis=0)
+    least = DEEP * math.sqrt(abs(signed_area(a, b)))
+    for owner in np.unique(snapshot.owner[shown]).tolist():
+        own = snapshot.position[shown[snapshot.owner[shown] == owner]]
+        deep = sum(winding_number(p, a, b) != 0 and distances_from_segments(p, a, b).min() > least for p in own)
+        shares[owner] = max(shares.get(owner, 0.0), deep / len(own))
     return [owner for owner, share in sorted(shares.items()) if share >= COVERED]
 
 
 def passable(snapshot: Snapshot, owner: int) -> list[int]:
-    """A particle of a body that another may pass, as it is alone in its collision group; else none."""
-    own = snapshot.particle_active & (snapshot.owner == owner)
-    groups = np.unique(snapshot.group[own])
-    alone = not np.isin(snapshot.group[snapshot.particle_active & ~own], groups).any()
-    return np.flatnonzero(own)[:1].tolist() if alone and len(groups) == 1 else []
+    """A particle of a body that what is drawn over it may pass: it has a collision group of its own. Else none."""
+    slot = int(np.flatnonzero(snapshot.particle_active & (snapshot.owner == owner))[0])
+    for joined in snapshot.equipment.joined:
+        if 0 <= slot - joined.first_particle < len(joined.particle_names) and "passes" in joined.definition:
+            others = snapshot.particle_active & (snapshot.group == snapshot.group[slot])
+            others[joined.first_particle : joined.first_particle + len(joined.particle_names)] = False
+            return [] if others.any() else [slot]
+    return []
 
 
 def _sides(loops: Sequence[Loop]) -> tuple[FloatRows, FloatRows]:

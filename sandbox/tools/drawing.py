@@ -137,7 +137,8 @@ class StrokeTool(PlacedTool):
         passed. Raises Unfit.
         """
         assert made.body is not None
-        below = covered(corners, np.array(made.body["particles"]), snapshot)
+        inside = np.array(made.body["particles"])[np.array(made.body["triangles"])].mean(axis=1)
+        below = covered(corners, inside, snapshot)
         passed = [slot for owner in below for slot in passable(snapshot, owner)]
         kept = set(below) - set(snapshot.owner[passed].tolist())
         by = lift([[*corners, corners[0]]], snapshot, shown_particles(snapshot) & np.isin(snapshot.owner, list(kept)))

@@ -5,6 +5,7 @@ import math
 import pygame
 import pytest
 
+from sandbox.app.play.thing_menu import HOLD, LET_GO, MOTOR, NO_MOTOR, TAKE_OUT
 from sandbox.app.play.toolbar import NAMES, refused_tools
 from sandbox.level.format.quantities import replaced
 from sandbox.level.rules.player_limits import PlayerLimits
@@ -102,6 +103,39 @@ def test_every_deed_of_the_menu_is_done_and_undone(player):
     assert "Let it move" in rows(player)
     take(player, "Let it move")
     assert state_hash(player.world) == before
+
+
+def test_the_menu_of_an_axle_gives_a_motor_that_keys_drive_and_takes_it_out(player):
+    player.key(pygame.K_SPACE)
+    player.key(pygame.K_2, pygame.KMOD_SHIFT)
+    stroke(player, *ring(0.0, 2.0, 0.5))
+    player.key(pygame.K_7, pygame.KMOD_SHIFT)
+    player.move(at(player, 0.1, 2.0))
+    player.frames(2)
+    assert player.stage.tool.hint == "wheel to the air" and player.stage.tool.ghost
+    stroke(player, (0.1, 2.0))
+    player.key(pygame.K_ESCAPE)
+    states = []
+    for text in (MOTOR, NO_MOTOR, LET_GO, HOLD, TAKE_OUT):
+        states.append(state_hash(player.world))
+        open_menu(player, 0.0, 2.0)
+        assert len(rows(player)) == 3
+        take(player, text)
+        assert [name for name, _ in player.app.play.keys.shown()] == (["a", "d"] if text == MOTOR else []), text
+    open_menu(player, 0.0, 2.0)
+    assert "Make it jelly" in rows(player)
+    player.key(pygame.K_ESCAPE)
+    for state in reversed(states):
+        player.key(pygame.K_z, pygame.KMOD_CTRL)
+        player.frames(2)
+        assert state_hash(player.world) == state
+
+
+def test_no_menu_hangs_over_the_status_line(player):
+    player.key(pygame.K_2, pygame.KMOD_SHIFT)
+    stroke(player, *ring(0.0, 0.6, 0.5))
+    open_menu(player, 0.0, 0.4)
+    assert pygame.Rect(player.stage.camera.viewport).contains(player.app.ui.focus.rect)
 
 
 def test_a_drawing_that_crosses_itself_stays_and_says_why_beside_the_pointer(player):

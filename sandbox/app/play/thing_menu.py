@@ -15,10 +15,10 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import copying_commands
 from sandbox.physics.analysis.query import particle_at
 from sandbox.physics.keeping.equipment import Firmness
-from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, firm_bodies
 from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, firm_bodies
 from sandbox.physics.world import World
-from sandbox.session.commands import Command, Remove, ScaleMass, SetFirmness
+from sandbox.session.commands import Command, Pin, Remove, ScaleMass, SetFirmness, Unpin
 from sandbox.tools.axle import Axle, axle_at, refitted, taken_out
 from sandbox.tools.clearance import lift
 from sandbox.tools.click import freezing
@@ -27,6 +27,7 @@ from sandbox.tools.tool import Loop
 
 WIDTH = 190.0
 NO_MOTOR, MOTOR, TAKE_OUT = "Loose, without its motor", "With a motor: A and D", "Take the axle out"
+HOLD, LET_GO = "Hold it in the air", "Let it go from the air"
 WEIGHTS = (("Half as heavy", 0.5), ("Twice as heavy", 2.0))
 NO_ROOM = "There is no room for a copy beside it."
 Say = Callable[[str], None]
@@ -105,9 +106,10 @@ def _entries(stage: Stage, particle: int) -> list[_Offer]:
 
 def _axle_entries(state: Snapshot, axle: Axle) -> list[_Offer]:
     """Entries of the menu for an axle."""
-    other = NO_MOTOR if axle.has_motor else MOTOR
+    hub, other = int(axle.slots[0]), NO_MOTOR if axle.has_motor else MOTOR
     return [
         _Offer(other, "add", lambda: refitted(state, axle, not axle.has_motor)),
+        _Offer(LET_GO, "pin", lambda: [Unpin(hub)]) if axle.is_pinned else _Offer(HOLD, "pin", lambda: [Pin(hub)]),
         _Offer(TAKE_OUT, "remove", lambda: taken_out(axle)),
     ]
 
