@@ -1,6 +1,6 @@
 """AxleTool: a click puts an axle through what is there: two bodies turn about it, or one about a place of the world.
 
-An axle may have a motor. It is a small wheel then, whose rim holds one body, and whose hub holds the other, or the air.
+An axle is a small wheel, which may have a motor: its rim holds one body, and its hub holds the others, or the air.
 """
 
 import math
@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.level.assembly.build_world import JoinedLevel
+from sandbox.level.kinds.wheel import WheelDef
 from sandbox.physics.analysis.query import bodies_around, particle_at, shown_particles
 from sandbox.physics.arrays import FloatRows, Slots
 from sandbox.physics.geometry.segment import lengths
@@ -18,14 +19,14 @@ from sandbox.session.commands import AddBody, AddSpring, Command, CutSprings, Re
 from sandbox.tools.dropping import in_pace
 from sandbox.tools.tool import NOTHING, Loop, PlayTool, Point, PointerEvent, Response, Submission, Tool
 
-# The body of an axle, by its id, and what that of a motor is of.
-AXLE_ID, MOTOR_STUFF = "axle", "drawn motor"
-# Springs from an axle to each body, and the shortest one as a share of the pick radius.
-SPOKES, SHORTEST = 3, 0.2
-# The axle's radius, as a share of its shortest spoke, and that of a motor as a share of the mean one.
-RADIUS, MOTOR_RADIUS = 0.3, 0.5
-# Spokes of a motor, and springs from each to what it turns.
-MOTOR_SPOKES, TIES = 6, 2
+# The body of an axle, by its id, and what it is of.
+AXLE_ID, STUFF = "axle", "drawn axle"
+# Its spokes, springs from each to what it turns, springs from its hub to each other body, and the shortest one [m].
+SPOKES, RIM_TIES, TIES, LEAST = 6, 2, 3, 1e-4
+# Its radius, as a share of the mean distance to the nearest particles that it holds; that of its particles, of its own.
+RADIUS, SKIN = 0.5, 0.3
+# Cs and Cd of what keeps its length.
+FIRM = {"stiffness": 1.0, "damping": 1.0}
 # A thing is round whose rim is nowhere so much nearer to its middle than elsewhere, in so many directions; an axle
 # snaps to the middle from within this share of its radius. What is so many times as long as wide is a plank.
 ROUND, DIRECTIONS, SNAP, LONG = 0.25, 8, 0.6, 2.5
@@ -99,7 +100,7 @@ class AxleTool(Tool):
             self._refusal = hinge if isinstance(hinge, str) else ""
             if isinstance(hinge, str):
                 return NOTHING
-            commands = _added(snapshot, hinge, SHORTEST * event.pick_radius, has_motor=False)
+            commands = _added(snapshot, hinge, has_motor=False)
         gesture = self._new_gesture()
         return Response(tuple(Submission(command, gesture) for command in commands))
 
@@ -152,15 +153,15 @@ def axle_at(snapshot: Snapshot, place: Point, within: float) -> Axle | None:
     """The axle at a place [m]."""
     for joined in snapshot.equipment.joined:
         slots = np.arange(joined.first_particle, joined.first_particle + len(joined.particle_names))
-        is_axle = isinstance(joined, JoinedLevel) and [body.id for body in joined.level.bodies] == [AXLE_ID]
-        if not is_axle or not snapshot.particle_active[slots].all():
+        body = joined.level.bodies[0] if isinstance(joined, JoinedLevel) and joined.level.bodies else None
+        if not isinstance(body, WheelDef) or body.id != AXLE_ID or not snapshot.particle_active[slots].all():
             continue
         if math.dist(snapshot.position[slots[0]].tolist(), place) < within:
             a, b = (np.isin(ends, slots) for ends in (snapshot.particle_a, snapshot.particle_b))
             ties = np.flatnonzero(snapshot.spring_active & (a != b) & (snapshot.material >= 0))
             held = np.where(a[ties], snapshot.particle_b[ties], snapshot.particle_a[ties])
             owners, hub = list(dict.fromkeys(snapshot.owner[held].tolist())), int(slots[0])
-            return Axle(slots, ties, owners, len(slots) > 1, bool(snapshot.inverse_mass[hub] == 0.0))
+            return Axle(slots, ties, owners, body.motor is not None, bool(snapshot.inverse_mass[hub] == 0.0))
     return None
 
 
@@ -176,41 +177,33 @@ def refitted(snapshot: Snapshot, axle: Axle, has_motor: bool) -> list[Command]:
     if not things:
         return []
     hinge = Hinge(_rounded_place(tuple(snapshot.position[axle.slots[0]].tolist())), things, axle.is_pinned)
-    return [*taken_out(axle), *_added(snapshot, hinge, 0.0, has_motor)]
+    return [*taken_out(axle), *_added(snapshot, hinge, has_motor)]
 
 
-def _added(snapshot: Snapshot, hinge: Hinge, least: float, has_motor: bool) -> list[Command]:
-    """The commands that add an axle with springs longer than the least [m]."""
-    tied = [_nearest(snapshot, thing.slots, hinge.place, SPOKES, least) for thing in hinge.things]
-    together = np.concatenate(tied)
-    distances = lengths(snapshot.position[together] - np.array(hinge.place))
-    mass, first = float(snapshot.mass[together].mean()), len(snapshot.mass)
-    common = {"id": AXLE_ID, "collides": []}
-    if not has_motor:
-        hub = {
-            "type": "mesh", "particles": [list(hinge.place)], "masses": [_rounded(mass)],
-            "pinned": [0] if hinge.is_pinned else [], "particle_radius": _rounded(RADIUS * float(distances.min())),
-        }  # fmt: skip
-        ends = [(first, slot) for slot in together.tolist()]
-        return [AddBody(hub | common), *(_tie(*pair) for pair in ends)]
-    radius = MOTOR_RADIUS * float(distances.mean())
-    turns = [math.tau * k / MOTOR_SPOKES for k in range(MOTOR_SPOKES)]
-    x, y = hinge.place
-    rim = [(x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns]
+def _added(snapshot: Snapshot, hinge: Hinge, has_motor: bool) -> list[Command]:
+    """The commands that add an axle: its rim holds the first thing, its hub the others."""
+    turned, *mounts = (thing.slots for thing in hinge.things)
+    near = np.concatenate([_nearest(snapshot, slots, hinge.place, TIES) for slots in (turned, *mounts)])
+    radius = RADIUS * float(lengths(snapshot.position[near] - np.array(hinge.place)).mean())
+    mass, first, (x, y) = float(snapshot.mass[near].mean()), len(snapshot.mass), hinge.place
+    turns = [math.tau * k / SPOKES for k in range(SPOKES)]
     ends = [
-        (first + 1 + MOTOR_SPOKES + k, slot)
-        for k, place in enumerate(rim)
-        for slot in _nearest(snapshot, hinge.things[0].slots, place, TIES, 0.0).tolist()
+        (first + 1 + SPOKES + k, slot)
+        for k, turn in enumerate(turns)
+        for slot in _nearest(snapshot, turned, (x + radius * math.cos(turn), y + radius * math.sin(turn)), RIM_TIES)
     ]
-    ends += [(first, slot) for slots in tied[1:] for slot in slots.tolist()]
+    ends += [(first, slot) for slots in mounts for slot in _nearest(snapshot, slots, hinge.place, TIES)]
     wheel = {
-        "type": "wheel", "position": list(hinge.place), "radius": _rounded(radius), "thickness": _rounded(radius / 2.0),
-        "segments": MOTOR_SPOKES, "particle_mass": _rounded(mass / MOTOR_SPOKES), "hub_mass": _rounded(mass),
-        "pin": ["hub"] if hinge.is_pinned else [], "particle_radius": _rounded(RADIUS * radius),
-        "material": MOTOR_STUFF, "motor": _motor(snapshot, hinge),
+        "type": "wheel", "id": AXLE_ID, "position": [x, y], "radius": _rounded(radius), "segments": SPOKES,
+        "thickness": _rounded(radius / 2.0), "particle_mass": _rounded(mass / SPOKES), "hub_mass": _rounded(mass),
+        "pin": ["hub"] if hinge.is_pinned else [], "particle_radius": _rounded(SKIN * radius), "material": STUFF,
+        # It lies inside of what it holds.
+        "collides": [],
+        **({"motor": _motor(snapshot, hinge)} if has_motor else {}),
     }  # fmt: skip
-    body = AddBody(wheel | common, materials={MOTOR_STUFF: {"stiffness": 1.0, "damping": 1.0}})
-    return [in_pace(body, snapshot.settings.tick_rate), *(_tie(*pair) for pair in ends)]
+    body = AddBody(wheel, materials={STUFF: FIRM})
+    ties = (AddSpring(own, int(slot), **FIRM) for own, slot in ends)
+    return [in_pace(body, snapshot.settings.tick_rate), *ties]
 
 
 def _motor(snapshot: Snapshot, hinge: Hinge) -> dict[str, Any]:
@@ -222,21 +215,17 @@ def _motor(snapshot: Snapshot, hinge: Hinge) -> dict[str, Any]:
     return {"key": ahead, "reverse_key": back, "speed": _rounded(speed), "torque": _rounded(torque)}
 
 
-def _tie(own: int, slot: int) -> AddSpring:
-    return AddSpring(own, slot, stiffness=1.0, damping=1.0)
-
-
-def _nearest(snapshot: Snapshot, slots: Slots, place: Point, count: int, least: float) -> Slots:
-    """The particles that are nearest to a place [m], and farther than the least [m]."""
+def _nearest(snapshot: Snapshot, slots: Slots, place: Point, count: int) -> Slots:
+    """The particles that are nearest to a place [m], and not at it."""
     distance = lengths(snapshot.position[slots] - np.array(place))
-    far = np.flatnonzero(distance > max(least, 1e-6))
-    return np.asarray(slots[far[np.argsort(distance[far], kind="stable")[:count]]])
+    off = np.flatnonzero(distance > LEAST)
+    return np.asarray(slots[off[np.argsort(distance[off], kind="stable")[:count]]])
 
 
 def _thing(snapshot: Snapshot, owner: int) -> Thing | None:
     """The body of an owner; None where it has too few particles for an axle."""
     slots = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == owner))
-    if len(slots) <= SPOKES:
+    if len(slots) <= TIES:
         return None
     places = snapshot.position[slots]
     middle, radius = _round_form(places)

@@ -157,7 +157,8 @@ def test_an_axle_snaps_to_the_middle_and_says_before_what_it_joins():
     tool.target((-4.65, 0.7), REACH, snapshot)
     assert not tool.is_refused and np.abs(np.mean(tool.ghost[0][:-1], axis=0) - REAR).max() < 0.03
     axle(session, (-4.65, 0.7))
-    assert np.abs(session.snapshot().position[-1] - REAR).max() < 0.03
+    hub = axle_at(session.snapshot(), REAR, REACH).slots[0]
+    assert np.abs(session.snapshot().position[hub] - REAR).max() < 0.03
 
 
 def test_what_was_not_drawn_over_but_moved_there_says_that_it_rubs():
@@ -178,7 +179,7 @@ def test_an_axle_takes_a_motor_loses_it_and_is_taken_out_and_each_is_undone():
     assert axle(session, REAR) == "Click: loose"
     states.append(state_hash(session.world))
     found = axle_at(session.snapshot(), REAR, REACH)
-    assert not found.has_motor and len(found.ties) == 6 and len(found.owners) == 2
+    assert not found.has_motor and len(found.owners) == 2
     submit(session, taken_out(found))
     assert axle_at(session.snapshot(), REAR, REACH) is None
     for state in reversed(states):
