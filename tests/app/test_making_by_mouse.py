@@ -5,8 +5,9 @@ import math
 import pygame
 import pytest
 
-from sandbox.app.play.thing_menu import HOLD, LET_GO, MOTOR, NO_MOTOR, TAKE_OUT
+from sandbox.app.play.thing_menu import COLOUR, HOLD, LET_GO, MOTOR, NO_MOTOR, TAKE_OUT
 from sandbox.app.play.toolbar import NAMES, refused_tools
+from sandbox.level.format.look import PALETTE
 from sandbox.level.format.quantities import replaced
 from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.physics.meshing.fitting import CROSSES
@@ -129,6 +130,36 @@ def test_the_menu_of_an_axle_gives_a_motor_that_keys_drive_and_takes_it_out(play
         player.key(pygame.K_z, pygame.KMOD_CTRL)
         player.frames(2)
         assert state_hash(player.world) == state
+
+
+def test_what_was_made_is_painted_from_its_menu_and_the_level_itself_is_not(open_app):
+    player = open_app(furnished())
+    player.key(pygame.K_SPACE)
+    x, y = player.world.position[player.world.particle_slot("cube.4")].tolist()
+    open_menu(player, x, y)
+    assert COLOUR not in rows(player)
+    player.key(pygame.K_ESCAPE)
+    player.key(pygame.K_2, pygame.KMOD_SHIFT)
+    stroke(player, *ring(0.5, 2.5, 0.5))
+
+    def picture():
+        player.frames(2)
+        left, top = at(player, 0.3, 2.7)
+        return pygame.image.tobytes(player.app.display.surface.subsurface((left, top, 30, 30)), "RGB")
+
+    before, state = picture(), state_hash(player.world)
+    open_menu(player, 0.5, 2.5)
+    take(player, COLOUR)
+    assert rows(player) == [name.capitalize() for name in PALETTE]
+    take(player, "Sky")
+    player.move(at(player, -3.0, 5.0))
+    pixels = picture()
+    red, _, blue = (sum(pixels[k::3]) for k in range(3))
+    assert blue > red and state_hash(player.world) == state
+    scene = player.playback.present_scene().session()
+    assert scene.world.joined[-1].level.bodies[0].look.colour == "sky"
+    player.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert picture() == before
 
 
 def test_no_menu_hangs_over_the_status_line(player):

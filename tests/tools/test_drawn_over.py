@@ -5,13 +5,17 @@ import math
 import numpy as np
 import pytest
 
+from sandbox.app.base.loop import at_once
+from sandbox.app.share.runs_for_pages import run_for_pages
 from sandbox.editor.document import Document
 from sandbox.editor.edits.bake import keep_added
 from sandbox.level.document.canonical import level_text
+from sandbox.level.format.look import PALETTE
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
-from sandbox.session.commands import AddBody
+from sandbox.session.commands import AddBody, CommandError
+from sandbox.session.commands.records import script_of
 from sandbox.session.scene import SceneTaker
 from sandbox.session.session import Session
 from sandbox.tools.axle import NOTHING_THERE, AxleTool, axle_at, taken_out
@@ -228,3 +232,32 @@ def test_carts_are_recorded_kept_as_scenes_and_as_levels_to_the_same_bits(tmp_pa
     moved = (again.world.position - start)[again.world.particle_slot("wood.0")]
     assert moved[0] > 1.5 and math.isfinite(moved[1])
     assert middle(again, "wood")[1] > 0.4
+
+
+def test_a_page_has_a_cart_with_its_groups_and_colours_to_the_same_bits():
+    session = wide()
+    cart(session)
+    axle(session, REAR)
+    session.do("set_colour", particle="+2.0", colour="sky")
+    run(session, 30)
+    script = script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
+    assert any(line.record["type"] == "set_colour" for line in script)
+    made = at_once(run_for_pages(session.level, script, 30))
+    kinds = [line.record["type"] for line in made.script]
+    assert "set_colour" not in kinds and all(
+        "kit" in line.record for line in made.script if line.record["type"] == "add_body"
+    )
+    wheel = made.script[1].record["kit"]
+    assert wheel["look"]["bodies"][0]["colour"] == f"#{PALETTE['sky']:06x}"
+    assert state_hash(made.world) == state_hash(session.world)
+    # The kits join a world as the definitions did.
+    again = Session(session.level, made.script)
+    assert state_hash(run(again, 30)) == state_hash(session.world)
+
+
+def test_what_is_of_the_level_is_not_painted():
+    session = wide({"type": "rope", "id": "rope", "start": [0, 3], "end": [2, 3], "segments": 4})
+    with pytest.raises(CommandError, match=r"rope\.1 is of the level"):
+        session.do("set_colour", particle="rope.1", colour="sky")
+    with pytest.raises(CommandError):
+        session.do("set_colour", particle="rope.1", colour="no colour")

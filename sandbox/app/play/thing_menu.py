@@ -6,19 +6,20 @@ from functools import partial
 from typing import NamedTuple
 
 from sandbox.app.contracts.screen import Pixel
-from sandbox.app.draw.colours import DISABLED, TEXT
+from sandbox.app.draw.colours import DISABLED, TEXT, unpacked
 from sandbox.app.play.stage import PICK_RADIUS, Stage
 from sandbox.app.widgets.picker import open_menu_at
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import copying_commands
+from sandbox.level.format.look import PALETTE
 from sandbox.physics.analysis.query import particle_at
 from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, firm_bodies
 from sandbox.physics.world import World
-from sandbox.session.commands import Command, Pin, Remove, ScaleMass, SetFirmness, Unpin
+from sandbox.session.commands import Command, Pin, Remove, ScaleMass, SetColour, SetFirmness, Unpin
 from sandbox.tools.axle import Axle, axle_at, refitted, taken_out
 from sandbox.tools.clearance import lift
 from sandbox.tools.click import freezing
@@ -27,6 +28,7 @@ from sandbox.tools.tool import Loop
 
 WIDTH = 190.0
 NO_MOTOR, MOTOR, TAKE_OUT = "Loose, without its motor", "With a motor: A and D", "Take the axle out"
+COLOUR = "Colour ..."
 HOLD, LET_GO = "Hold it in the air", "Let it go from the air"
 WEIGHTS = (("Half as heavy", 0.5), ("Twice as heavy", 2.0))
 NO_ROOM = "There is no room for a copy beside it."
@@ -52,7 +54,14 @@ def open_thing_menu(ui: Ui, stage: Stage, pixel: Pixel, say: Say) -> bool:
     entries = _entries(stage, particle) if axle is None else _axle_entries(playback.current, axle)
     hands = playback.level.hands
 
+    def paint(index: int) -> None:
+        playback.submit(SetColour(particle, list(PALETTE)[index]))
+
     def take(index: int) -> None:
+        if entries[index].text == COLOUR:
+            colours = [Row(name.capitalize(), swatch=unpacked(tone)) for name, tone in PALETTE.items()]
+            open_menu_at(ui, pixel, ui.px(WIDTH), colours, paint, stage.camera.viewport)
+            return
         gesture = playback.session.new_gesture()
         try:
             commands = entries[index].make()
@@ -95,6 +104,9 @@ def _entries(stage: Stage, particle: int) -> list[_Offer]:
     if form is not None:
         entries = [_Offer(f"Make it {word}", "firmness", partial(_softened, world, form, word)) for word in WORDS]
     entries += [_Offer(text, "mass", partial(_weighed, particle, factor)) for text, factor in WEIGHTS]
+    body = world.particle_names[particle].partition(".")[0]
+    if any(body in joined.names and "kit" not in joined.definition for joined in world.joined):
+        entries.append(_Offer(COLOUR, "add", list))
     is_fixed = not (state.inverse_mass[state.owner == state.owner[particle]] > 0.0).any()
     return [
         *entries,
