@@ -106,7 +106,7 @@ def _entries(stage: Stage, particle: int) -> list[_Offer]:
     entries += [_Offer(text, "mass", partial(_weighed, particle, factor)) for text, factor in WEIGHTS]
     body = world.particle_names[particle].partition(".")[0]
     if any(body in joined.names and "kit" not in joined.definition for joined in world.joined):
-        entries.append(_Offer(COLOUR, "add", list))
+        entries.append(_Offer(COLOUR, "", list))
     is_fixed = not (state.inverse_mass[state.owner == state.owner[particle]] > 0.0).any()
     return [
         *entries,
