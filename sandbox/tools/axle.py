@@ -4,7 +4,7 @@ An axle is a small wheel, which may have a motor: its rim holds one body, and it
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -109,6 +109,7 @@ class AxleTool(Tool):
         self._says, self._ring = "", []
         axle = axle_at(snapshot, place, within)
         if axle is not None:
+            self._refusal = ""
             self._says = "Click: loose" if axle.has_motor else f"Click: a motor ({KEYS[1].upper()}, {KEYS[0].upper()})"
             return int(axle.slots[0])
         hinge = hinge_at(snapshot, place, within)
@@ -135,7 +136,8 @@ def hinge_at(snapshot: Snapshot, place: Point, within: float) -> Hinge | str:
     front = particle_at(snapshot, place, within)
     if front is None:
         return NOTHING_THERE
-    owners = {int(snapshot.owner[front]), *bodies_around(snapshot, place).tolist()}
+    axles = {int(snapshot.owner[slots[0]]) for slots, _ in _axles(snapshot)}
+    owners = {int(snapshot.owner[front]), *bodies_around(snapshot, place).tolist()} - axles
     # What was made later lies before what was there.
     here = [thing for owner in sorted(owners, reverse=True) if (thing := _thing(snapshot, owner)) is not None]
     if not here:
@@ -145,17 +147,13 @@ def hinge_at(snapshot: Snapshot, place: Point, within: float) -> Hinge | str:
     turned = min(wheels, key=lambda each: each.radius or 0.0, default=here[0])
     if wheels or math.dist(turned.middle, place) < within:
         place = turned.middle
-    others = [each for each in here if each is not turned] or (_below(snapshot, turned) if wheels else [])
+    others = [each for each in here if each is not turned] or (_below(snapshot, turned, axles) if wheels else [])
     return Hinge(_rounded_place(place), [turned, *others], not others)
 
 
 def axle_at(snapshot: Snapshot, place: Point, within: float) -> Axle | None:
     """The axle at a place [m]."""
-    for joined in snapshot.equipment.joined:
-        slots = np.arange(joined.first_particle, joined.first_particle + len(joined.particle_names))
-        body = joined.level.bodies[0] if isinstance(joined, JoinedLevel) and joined.level.bodies else None
-        if not isinstance(body, WheelDef) or body.id != AXLE_ID or not snapshot.particle_active[slots].all():
-            continue
+    for slots, body in _axles(snapshot):
         if math.dist(snapshot.position[slots[0]].tolist(), place) < within:
             a, b = (np.isin(ends, slots) for ends in (snapshot.particle_a, snapshot.particle_b))
             ties = np.flatnonzero(snapshot.spring_active & (a != b) & (snapshot.material >= 0))
@@ -163,6 +161,15 @@ def axle_at(snapshot: Snapshot, place: Point, within: float) -> Axle | None:
             owners, hub = list(dict.fromkeys(snapshot.owner[held].tolist())), int(slots[0])
             return Axle(slots, ties, owners, body.motor is not None, bool(snapshot.inverse_mass[hub] == 0.0))
     return None
+
+
+def _axles(snapshot: Snapshot) -> Iterator[tuple[Slots, WheelDef]]:
+    """The axles that are there, by their particles, with what they are."""
+    for joined in snapshot.equipment.joined:
+        body = joined.level.bodies[0] if isinstance(joined, JoinedLevel) and joined.level.bodies else None
+        slots = np.arange(joined.first_particle, joined.first_particle + len(joined.particle_names))
+        if isinstance(body, WheelDef) and body.id == AXLE_ID and snapshot.particle_active[slots].all():
+            yield slots, body
 
 
 def taken_out(axle: Axle) -> list[Command]:
@@ -247,13 +254,15 @@ def _round_form(places: FloatRows) -> tuple[Point, float | None]:
     return (x, y), float(reach.max()) if is_round else None
 
 
-def _below(snapshot: Snapshot, wheel: Thing) -> list[Thing]:
+def _below(snapshot: Snapshot, wheel: Thing, axles: set[int]) -> list[Thing]:
     """The thing that a wheel lies over, rather one that it passes, and rather one that it covers most."""
     some = wheel.slots[:: max(1, len(wheel.slots) // SAMPLES)]
     around = [bodies_around(snapshot, (x, y)) for x, y in snapshot.position[some].tolist()]
     owners, counts = np.unique(np.concatenate(around), return_counts=True)
     ranked = owners[np.argsort(-counts, kind="stable")].tolist()
-    there = [each for owner in ranked if owner != wheel.owner and (each := _thing(snapshot, owner)) is not None]
+    there = [
+        each for owner in ranked if owner not in {wheel.owner, *axles} and (each := _thing(snapshot, owner)) is not None
+    ]
     return sorted(there, key=lambda each: _touch(snapshot, wheel.slots[0], each.slots[0]))[:1]
 
 

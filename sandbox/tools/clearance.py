@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sandbox.physics.analysis.query import bodies_around, shown_particles
 from sandbox.physics.arrays import FloatRows
 from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas, signed_area, winding_number
+from sandbox.physics.marks import TERRAIN_GROUP
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.tool import Loop
 
@@ -57,15 +58,15 @@ def covered(corners: Loop, places: FloatRows, snapshot: Snapshot) -> list[int]:
 
     places [m] (n, 2): evenly inside of it.
     """
-    around = [owner for x, y in places.tolist() for owner in bodies_around(snapshot, (x, y)).tolist()]
-    shares = {owner: around.count(owner) / len(places) for owner in around}
-    a, shown = np.array(corners), np.flatnonzero(shown_particles(snapshot))
+    # What touches the ground alone, or nothing, is in nobody's way.
+    a, shown = np.array(corners), np.flatnonzero(shown_particles(snapshot) & (snapshot.collides & ~TERRAIN_GROUP != 0))
     b = np.roll(a, -1, axis=0)
-    least = DEEP * math.sqrt(abs(signed_area(a, b)))
+    least, shares = DEEP * math.sqrt(abs(signed_area(a, b))), dict[int, float]()
+    around = [owner for x, y in places.tolist() for owner in bodies_around(snapshot, (x, y)).tolist()]
     for owner in np.unique(snapshot.owner[shown]).tolist():
         own = snapshot.position[shown[snapshot.owner[shown] == owner]]
         deep = sum(winding_number(p, a, b) != 0 and distances_from_segments(p, a, b).min() > least for p in own)
-        shares[owner] = max(shares.get(owner, 0.0), deep / len(own))
+        shares[owner] = max(around.count(owner) / len(places), deep / len(own))
     return [owner for owner, share in sorted(shares.items()) if share >= COVERED]
 
 

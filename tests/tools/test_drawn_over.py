@@ -195,6 +195,18 @@ def test_an_axle_takes_a_motor_loses_it_and_is_taken_out_and_each_is_undone():
     assert state_hash(session.world) == states[1]
 
 
+def test_an_axle_is_no_thing_to_the_next_axle_nor_in_the_way_of_a_drawing():
+    session = wide()
+    draw(session, slab(0.0, 3.0, 3.0, 0.8))
+    axle(session, (0.0, 3.0))
+    tool = AxleTool(session.new_gesture)
+    tool.target((0.2, 3.0), REACH, session.snapshot())
+    assert tool.hint == "plank to the air"
+    wheel = draw(session, ring(0.0, 3.0, 0.6))
+    assert np.abs(middle(session, wheel) - (0.0, 3.0)).max() < 0.03
+    assert [session.world.particle_names[slot] for slot in session.world.joined[-1].definition["passes"]] == ["+1.0"]
+
+
 def test_three_things_turn_about_one_axle_and_a_motor_that_is_held_in_the_air_stays():
     session = wide()
     for points in (slab(0.0, 3.0, 0.3, 3.0), slab(0.0, 3.0, 3.0, 0.3), ring(0.0, 3.0, 0.5)):
