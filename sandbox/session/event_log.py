@@ -441,6 +441,7 @@ _WORDS = {
     "set_firmness": "became softer or firmer",
     "set_inflation": "was pumped up",
     "scale_mass": "became lighter or heavier",
+    "set_colour": "was painted",
 }
 
 

@@ -1,13 +1,15 @@
 """Clearance: how far a part has to be lifted so that it stands on what is below it, or that it has no room."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.analysis.query import shown_particles
+from sandbox.physics.analysis.query import bodies_around, shown_particles
 from sandbox.physics.arrays import FloatRows
-from sandbox.physics.geometry.segment import doubled_areas, signed_area, winding_number
+from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas, signed_area, winding_number
+from sandbox.physics.marks import TERRAIN_GROUP
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.tool import Loop
 
@@ -18,21 +20,26 @@ MOST_LIFT, STEPS, HALVINGS = 2.0, 16, 6
 LEAST_HEIGHT = 0.1
 # A part may reach so far into what it stands on [share of its height]: it is not drawn to the very rim.
 SLACK = 0.02
+# A drawn body lies over another of which it covers this share, or which covers this share of it; less is a stroke that
+# runs over a little. Of the other counts what lies deeper than this share of the drawn one's size.
+COVERED, DEEP = 0.1, 0.1
 # Sides of a part and of the terrain that are looked at, at most: beyond them every drop has room.
 MOST_PAIRS = 400_000
 
 Mask = NDArray[np.bool_]
 
 
-def lift(loops: Sequence[Loop], snapshot: Snapshot) -> float | None:
+def lift(loops: Sequence[Loop], snapshot: Snapshot, among: Mask | None = None) -> float | None:
     """How far [m] a part has to go up to touch nothing; None: it would have no room there either.
 
-    loops [m]: its outline; lines that do not end where they begin have no inside.
+    loops [m]: its outline; lines that do not end where they begin have no inside. among (n,): the particles that it may
+    not touch; None: all.
     """
     a, b = _sides(loops)
     width, height = (a.max(axis=0) - a.min(axis=0)).tolist()
     height = max(height, width * LEAST_HEIGHT)
-    obstacles = _Obstacles(snapshot, a, height, is_closed=all(loop[0] == loop[-1] for loop in loops))
+    shown = shown_particles(snapshot) if among is None else among
+    obstacles = _Obstacles(snapshot, shown, a, height, is_closed=all(loop[0] == loop[-1] for loop in loops))
     if not obstacles.hits(a, b):
         return 0.0
     step = height / STEPS
@@ -44,6 +51,34 @@ def lift(loops: Sequence[Loop], snapshot: Snapshot) -> float | None:
                 low, high = (middle, high) if obstacles.hits(*_raised(a, b, middle)) else (low, middle)
             return high
     return None
+
+
+def covered(corners: Loop, places: FloatRows, snapshot: Snapshot) -> list[int]:
+    """Owners of the bodies that a drawn body lies over, rather than beside; corners [m]: its outline.
+
+    places [m] (n, 2): evenly inside of it.
+    """
+    # What touches the ground alone, or nothing, is in nobody's way.
+    a, shown = np.array(corners), np.flatnonzero(shown_particles(snapshot) & (snapshot.collides & ~TERRAIN_GROUP != 0))
+    b = np.roll(a, -1, axis=0)
+    least, shares = DEEP * math.sqrt(abs(signed_area(a, b))), dict[int, float]()
+    around = [owner for x, y in places.tolist() for owner in bodies_around(snapshot, (x, y)).tolist()]
+    for owner in np.unique(snapshot.owner[shown]).tolist():
+        own = snapshot.position[shown[snapshot.owner[shown] == owner]]
+        deep = sum(winding_number(p, a, b) != 0 and distances_from_segments(p, a, b).min() > least for p in own)
+        shares[owner] = max(around.count(owner) / len(places), deep / len(own))
+    return [owner for owner, share in sorted(shares.items()) if share >= COVERED]
+
+
+def passable(snapshot: Snapshot, owner: int) -> list[int]:
+    """A particle of a body that what is drawn over it may pass: it has a collision group of its own. Else none."""
+    slot = int(np.flatnonzero(snapshot.particle_active & (snapshot.owner == owner))[0])
+    for joined in snapshot.equipment.joined:
+        if 0 <= slot - joined.first_particle < len(joined.particle_names) and "passes" in joined.definition:
+            others = snapshot.particle_active & (snapshot.group == snapshot.group[slot])
+            others[joined.first_particle : joined.first_particle + len(joined.particle_names)] = False
+            return [] if others.any() else [slot]
+    return []
 
 
 def _sides(loops: Sequence[Loop]) -> tuple[FloatRows, FloatRows]:
@@ -63,10 +98,9 @@ def _raised(a: FloatRows, b: FloatRows, by: float) -> tuple[FloatRows, FloatRows
 class _Obstacles:
     """The obstacles that a part with sides from a on may hit within the reach of its lift."""
 
-    def __init__(self, snapshot: Snapshot, a: FloatRows, height: float, is_closed: bool) -> None:
+    def __init__(self, snapshot: Snapshot, shown: Mask, a: FloatRows, height: float, is_closed: bool) -> None:
         self._is_closed = is_closed
         low, high = a.min(axis=0), a.max(axis=0) + np.array([0.0, MOST_LIFT * height])
-        shown = shown_particles(snapshot)
         position, radius = snapshot.position[shown], snapshot.radius[shown]
         with np.errstate(invalid="ignore"):
             near = np.all((position + radius[:, None] >= low) & (position - radius[:, None] <= high), axis=1)

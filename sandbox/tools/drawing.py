@@ -2,17 +2,20 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from sandbox.level.format.quantities import significant
 from sandbox.level.kinds.geometry import drawn_outline, rows_of
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arena import answer_of
 from sandbox.physics.meshing import fitting
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody
-from sandbox.tools.clearance import lift
+from sandbox.tools.clearance import covered, lift, passable
 from sandbox.tools.dropping import COLOURS, DENSITY, in_pace
 from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PlayTool, PointerEvent, Response, Submission
 
@@ -121,14 +124,29 @@ class StrokeTool(PlacedTool):
         code = fitting.outline_fault(rows_of([corners])[0], reach * reach)
         if code != fitting.FITS:
             raise Unfit(REFUSALS[code])
-        by = lift([[*corners, corners[0]]], snapshot) if self.touches else 0.0
-        if by is None:
-            raise Unfit(NO_ROOM)
-        raised = [(x, y + by) for x, y in corners]
         colour = COLOURS[self.count % len(COLOURS)]
-        command = in_pace(meshed(raised, self._material, colour), snapshot.settings.tick_rate)
+        made = meshed(corners, self._material, colour)
+        if self.touches:
+            made = self._laid(corners, made, colour, snapshot)
+        command = in_pace(made, snapshot.settings.tick_rate)
         assert isinstance(command, AddBody)
         return command
+
+    def _laid(self, corners: Loop, made: AddBody, colour: str, snapshot: Snapshot) -> AddBody:
+        """A drawn body before the things that it covers, which it passes; out of the ground and of what is not to be
+        passed. Raises Unfit.
+        """
+        assert made.body is not None
+        inside = np.array(made.body["particles"])[np.array(made.body["triangles"])].mean(axis=1)
+        below = covered(corners, inside, snapshot)
+        passed = [slot for owner in below for slot in passable(snapshot, owner)]
+        kept = set(below) - set(snapshot.owner[passed].tolist())
+        by = lift([[*corners, corners[0]]], snapshot, shown_particles(snapshot) & np.isin(snapshot.owner, list(kept)))
+        if by is None:
+            raise Unfit(NO_ROOM)
+        if by > 0.0:
+            made = meshed([(x, y + by) for x, y in corners], self._material, colour)
+        return replace(made, passes=tuple(passed))
 
     @property
     def ghost(self) -> list[Loop]:

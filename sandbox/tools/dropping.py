@@ -1,7 +1,7 @@
 """Dropping: a click drops a part under the pointer, a drag throws it. Each part is a command."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -166,6 +166,11 @@ PARTS: dict[str, Droppable] = {
 }
 
 
+def in_own_groups(commands: Iterable[Command]) -> tuple[Command, ...]:
+    """Commands whose bodies what is drawn later may pass, see AddBody."""
+    return tuple(replace(each, passes=()) if isinstance(each, AddBody) else each for each in commands)
+
+
 def in_pace(command: Command, tick_rate: int) -> Command:
     """The command that adds a part which moves per second, at this tick rate, as it does at the usual one.
 
@@ -289,7 +294,7 @@ class DropTool(Sized, ThrowTool):
         """The part in its present size."""
         made = self.part.make(self.size, place, velocity, self.colour)
         self.count += 1
-        return (in_pace(made, snapshot.settings.tick_rate),)
+        return in_own_groups([in_pace(made, snapshot.settings.tick_rate)])
 
     @property
     def colour(self) -> str:

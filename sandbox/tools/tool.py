@@ -137,8 +137,13 @@ class Tool(ABC):
 
     @property
     def hint(self) -> str:
-        """A sentence beside the pointer: why the last press did nothing."""
+        """A sentence beside the pointer: why the last press did nothing, or what one would do."""
         return self._refusal
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the last press did nothing."""
+        return bool(self._refusal)
 
     @property
     def preview(self) -> DropPicture | None:

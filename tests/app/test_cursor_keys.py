@@ -5,6 +5,7 @@ import pytest
 
 from sandbox.app.base.shortcuts import action_of, shortcuts
 from sandbox.level.reading.files import load_level
+from sandbox.tools.axle import AxleTool
 from sandbox.tools.click import ClickTool
 from tests.app.conftest import small_level
 
@@ -123,7 +124,7 @@ def test_a_rope_is_pulled_from_one_thing_to_another_by_keys(driver):
 
 def test_tools_that_act_at_a_press_are_not_held(driver):
     for name, tool in driver.stage.tools.items():
-        assert tool.is_held != isinstance(tool, ClickTool), name
+        assert tool.is_held != isinstance(tool, (ClickTool, AxleTool)), name
 
 
 def test_a_pair_of_runs_has_no_menu_by_keys_either(driver):

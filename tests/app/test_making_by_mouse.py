@@ -5,7 +5,9 @@ import math
 import pygame
 import pytest
 
+from sandbox.app.play.thing_menu import COLOUR, HOLD, LET_GO, MOTOR, NO_MOTOR, TAKE_OUT
 from sandbox.app.play.toolbar import NAMES, refused_tools
+from sandbox.level.format.look import PALETTE
 from sandbox.level.format.quantities import replaced
 from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.physics.meshing.fitting import CROSSES
@@ -67,7 +69,7 @@ def test_a_jelly_is_drawn_hung_by_a_rope_softened_and_cut_and_every_step_undone(
     stroke(player, (0.0, 3.1), (0.0, 4.0), (0.0, 5.0))
     player.key(pygame.K_ESCAPE)
     open_menu(player, 0.0, 2.5)
-    assert rows(player)[:5] == ["Make it jelly", "Make it soft", "Make it firm", "Half as heavy", "Twice as heavy"]
+    assert rows(player)[:5] == [f"Make it {word}" for word in ("jelly", "soft", "firm", "hard", "rigid")]
     take(player, "Make it soft")
     player.key(pygame.K_c)
     stroke(player, (-0.5, 4.0), (0.5, 4.01), (0.6, 4.0))
@@ -102,6 +104,69 @@ def test_every_deed_of_the_menu_is_done_and_undone(player):
     assert "Let it move" in rows(player)
     take(player, "Let it move")
     assert state_hash(player.world) == before
+
+
+def test_the_menu_of_an_axle_gives_a_motor_that_keys_drive_and_takes_it_out(player):
+    player.key(pygame.K_SPACE)
+    player.key(pygame.K_2, pygame.KMOD_SHIFT)
+    stroke(player, *ring(0.0, 2.0, 0.5))
+    player.key(pygame.K_7, pygame.KMOD_SHIFT)
+    player.move(at(player, 0.1, 2.0))
+    player.frames(2)
+    assert player.stage.tool.hint == "wheel to the air" and player.stage.tool.ghost
+    stroke(player, (0.1, 2.0))
+    player.key(pygame.K_ESCAPE)
+    states = []
+    for text in (MOTOR, NO_MOTOR, LET_GO, HOLD, TAKE_OUT):
+        states.append(state_hash(player.world))
+        open_menu(player, 0.0, 2.0)
+        assert len(rows(player)) == 3
+        take(player, text)
+        assert [name for name, _ in player.app.play.keys.shown()] == (["a", "d"] if text == MOTOR else []), text
+    open_menu(player, 0.0, 2.0)
+    assert "Make it jelly" in rows(player)
+    player.key(pygame.K_ESCAPE)
+    for state in reversed(states):
+        player.key(pygame.K_z, pygame.KMOD_CTRL)
+        player.frames(2)
+        assert state_hash(player.world) == state
+
+
+def test_what_was_made_is_painted_from_its_menu_and_the_level_itself_is_not(open_app):
+    player = open_app(furnished())
+    player.key(pygame.K_SPACE)
+    x, y = player.world.position[player.world.particle_slot("cube.4")].tolist()
+    open_menu(player, x, y)
+    assert COLOUR not in rows(player)
+    player.key(pygame.K_ESCAPE)
+    player.key(pygame.K_2, pygame.KMOD_SHIFT)
+    stroke(player, *ring(0.5, 2.5, 0.5))
+
+    def picture():
+        player.frames(2)
+        left, top = at(player, 0.3, 2.7)
+        return pygame.image.tobytes(player.app.display.surface.subsurface((left, top, 30, 30)), "RGB")
+
+    before, state = picture(), state_hash(player.world)
+    open_menu(player, 0.5, 2.5)
+    take(player, COLOUR)
+    assert rows(player) == [name.capitalize() for name in PALETTE]
+    take(player, "Sky")
+    player.move(at(player, -3.0, 5.0))
+    pixels = picture()
+    red, _, blue = (sum(pixels[k::3]) for k in range(3))
+    assert blue > red and state_hash(player.world) == state
+    scene = player.playback.present_scene().session()
+    assert scene.world.joined[-1].level.bodies[0].look.colour == "sky"
+    player.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert picture() == before
+
+
+def test_no_menu_hangs_over_the_status_line(player):
+    player.key(pygame.K_2, pygame.KMOD_SHIFT)
+    stroke(player, *ring(0.0, 0.6, 0.5))
+    open_menu(player, 0.0, 0.4)
+    assert pygame.Rect(player.stage.camera.viewport).contains(player.app.ui.focus.rect)
 
 
 def test_a_drawing_that_crosses_itself_stays_and_says_why_beside_the_pointer(player):

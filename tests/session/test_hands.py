@@ -129,7 +129,7 @@ def test_faults_of_hands_say_where_and_what_to_do():
         level(bodies=["bal"])
 
 
-def test_every_word_stands_for_commands_and_every_command_but_keys_and_history_has_one():
+def test_every_word_stands_for_commands_and_every_command_but_keys_history_and_paint_has_one():
     meant = [kind for meaning in MEANINGS.values() for kind in meaning.commands]
     assert set(MEANINGS) == set(DEEDS) and len(meant) == len(set(meant))
-    assert set(COMMAND_TYPES) - set(meant) == {"set_drive", "hold_key", "undo", "redo"}
+    assert set(COMMAND_TYPES) - set(meant) == {"set_drive", "hold_key", "undo", "redo", "set_colour"}

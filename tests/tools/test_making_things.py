@@ -197,15 +197,15 @@ def test_a_body_turns_about_an_axle_and_two_that_lie_over_each_other_turn_about_
     drawn(session, "wood", plank, touches=False)
     axle = AxleTool(session.new_gesture)
     hub, *spokes = gesture(axle, session, (0.2, 3.0), (0.2, 3.0))
-    assert hub.body["pinned"] == [0] and len(spokes) == 3 and axle.hint == ""
+    assert hub.body["pin"] == ["hub"] and len(spokes) == 12 and axle.hint == ""
     drawn(session, "wood", [(x + 1.7, y) for x, y in plank], touches=False)
     hub, *spokes = gesture(axle, session, (1.85, 3.0), (1.85, 3.0))
-    assert hub.body["pinned"] == [] and len(spokes) == 6
+    assert hub.body["pin"] == [] and len(spokes) == 15
     first, second, held, free = (slots_of(session.world, f"+{number}") for number in (1, 3, 2, 4))
     world = run(session, 60)
-    assert np.array_equal(world.position[held], [[0.2, 3.0]]) and not session.messages
+    assert np.array_equal(world.position[held[:1]], [[0.2, 3.0]]) and not session.messages
     for slots in (first, second):
-        assert np.linalg.norm(world.position[slots] - world.position[free], axis=1).min() < 0.4
+        assert np.linalg.norm(world.position[slots] - world.position[free[0]], axis=1).min() < 0.4
     assert world.position[second, 1].min() < 1.5
     reach = np.linalg.norm(world.position[first] - (0.2, 3.0), axis=1)
     assert reach.min() < 0.3 and reach.max() == pytest.approx(1.8, abs=0.1)

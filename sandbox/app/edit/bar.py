@@ -220,7 +220,8 @@ def open_context_menu(screen: Editing, pixel: Pixel) -> None:
         screen.select(with_groups(screen.document.level, frozenset(under[:1])) - screen.visibility.closed)
     entries = [*_actions(screen, pixel, OVER_THINGS if under else OVER_NOTHING), *_things(screen, under)]
     rows = [entry.row for entry in entries]
-    open_menu_at(screen.ui, pixel, screen.ui.px(WIDTH), rows, lambda index: entries[index].do())
+    place = screen.camera.viewport
+    open_menu_at(screen.ui, pixel, screen.ui.px(WIDTH), rows, lambda index: entries[index].do(), place)
 
 
 def _things(screen: Editing, under: list[Item]) -> list[_Entry]:

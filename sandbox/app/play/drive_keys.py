@@ -54,15 +54,18 @@ class DriveKeys:
 
     @property
     def _keys(self) -> dict[int, list[tuple[int, float]]]:
-        """The parts that each key drives: of the level, and of what has joined it."""
-        joined = self.playback.session.world.joined
+        """The parts that each key drives: of the level, and of what has joined it and is there."""
+        world = self.playback.session.world
+        joined, motors = world.joined, world.actuators.motors
         if self._joined is not joined:
             self._joined, self._all = joined, {}
             for level, first in [(self.playback.level, 0), *((each.level, each.first_part) for each in joined)]:
                 for key, parts in driving_keys(level).items():
                     self._names[code_of(key)] = key
                     self._all.setdefault(code_of(key), []).extend((first + part, value) for part, value in parts)
-        return self._all
+        gone = set(motors.part[~world.particle_active[motors.hub]].tolist())
+        there = {key: [each for each in parts if each[0] not in gone] for key, parts in self._all.items()}
+        return {key: parts for key, parts in there.items() if parts}
 
     def press(self, key: int, modifiers: int) -> bool:
         """Drive the parts of a key, and answer rules that ask for it; whether the key does anything here."""

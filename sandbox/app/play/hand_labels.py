@@ -58,7 +58,7 @@ def draw_hint(surface: pygame.Surface, ui: Ui, camera: Camera, tool: Tool) -> No
     size = max(ui.font(TEXT_SIZE).size(line)[0] for line in lines), ui.font(TEXT_SIZE).get_linesize() * len(lines)
     x, y = camera.to_pixels(tool.place)
     x, y = min(x + ui.px(ASIDE), left + width - size[0] - ui.px(ASIDE)), min(y + ui.px(ASIDE), top + height - size[1])
-    _write(surface, ui, (x, y), lines, WARNING)
+    _write(surface, ui, (x, y), lines, WARNING if tool.is_refused else TEXT)
 
 
 def _write(surface: pygame.Surface, ui: Ui, place: tuple[float, float], lines: list[str], colour: Colour) -> None:

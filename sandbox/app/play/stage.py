@@ -27,7 +27,7 @@ from sandbox.physics.world import World
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
 from sandbox.tools.drag import DRAG, DragTool
-from sandbox.tools.dropping import CatalogueTool
+from sandbox.tools.dropping import CatalogueTool, in_own_groups
 from sandbox.tools.play_tools import PLAY_TOOLS
 from sandbox.tools.tool import PointerEvent, Tool, usual_size
 
@@ -95,7 +95,7 @@ class Stage:
         def make(place: tuple[float, float], velocity: tuple[float, float], times: float) -> tuple[Command, ...]:
             # The pointer is in the middle of what it throws.
             at = place[0] - times * (left + right) / 2, place[1] - times * (bottom + top) / 2
-            return joining_commands(sized(part, times), self.playback.session.world, at, velocity)
+            return in_own_groups(joining_commands(sized(part, times), self.playback.session.world, at, velocity))
 
         tool = CatalogueTool(self.playback.session.new_gesture, part, make, size)
         tool.touches = self.playback.level.has_contacts

@@ -6,24 +6,30 @@ from functools import partial
 from typing import NamedTuple
 
 from sandbox.app.contracts.screen import Pixel
-from sandbox.app.draw.colours import DISABLED, TEXT
+from sandbox.app.draw.colours import DISABLED, TEXT, unpacked
 from sandbox.app.play.stage import PICK_RADIUS, Stage
 from sandbox.app.widgets.picker import open_menu_at
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import copying_commands
+from sandbox.level.format.look import PALETTE
 from sandbox.physics.analysis.query import particle_at
 from sandbox.physics.keeping.equipment import Firmness
+from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, firm_bodies
 from sandbox.physics.world import World
-from sandbox.session.commands import Command, Remove, ScaleMass, SetFirmness
+from sandbox.session.commands import Command, Pin, Remove, ScaleMass, SetColour, SetFirmness, Unpin
+from sandbox.tools.axle import Axle, axle_at, refitted, taken_out
 from sandbox.tools.clearance import lift
 from sandbox.tools.click import freezing
+from sandbox.tools.dropping import in_own_groups
 from sandbox.tools.tool import Loop
 
 WIDTH = 190.0
-SOFTNESSES = ("jelly", "soft", "firm")
+NO_MOTOR, MOTOR, TAKE_OUT = "Loose, without its motor", "With a motor: A and D", "Take the axle out"
+COLOUR = "Colour ..."
+HOLD, LET_GO = "Hold it in the air", "Let it go from the air"
 WEIGHTS = (("Half as heavy", 0.5), ("Twice as heavy", 2.0))
 NO_ROOM = "There is no room for a copy beside it."
 Say = Callable[[str], None]
@@ -41,14 +47,21 @@ def open_thing_menu(ui: Ui, stage: Stage, pixel: Pixel, say: Say) -> bool:
     """Offer what can be made of the thing under a pixel; whether there is one."""
     playback = stage.playback
     playback.apply_pending()
-    within = PICK_RADIUS * stage.renderer.scale / stage.camera.zoom
-    particle = particle_at(playback.current, stage.camera.to_world(pixel), within)
+    within, place = PICK_RADIUS * stage.renderer.scale / stage.camera.zoom, stage.camera.to_world(pixel)
+    particle, axle = particle_at(playback.current, place, within), axle_at(playback.current, place, within)
     if particle is None:
         return False
-    entries = _entries(stage, particle)
+    entries = _entries(stage, particle) if axle is None else _axle_entries(playback.current, axle)
     hands = playback.level.hands
 
+    def paint(index: int) -> None:
+        playback.submit(SetColour(particle, list(PALETTE)[index]))
+
     def take(index: int) -> None:
+        if entries[index].text == COLOUR:
+            colours = [Row(name.capitalize(), swatch=unpacked(tone)) for name, tone in PALETTE.items()]
+            open_menu_at(ui, pixel, ui.px(WIDTH), colours, paint, stage.camera.viewport)
+            return
         gesture = playback.session.new_gesture()
         try:
             commands = entries[index].make()
@@ -59,7 +72,7 @@ def open_thing_menu(ui: Ui, stage: Stage, pixel: Pixel, say: Say) -> bool:
             playback.submit(command, gesture)
 
     rows = [Row(each.text, colour=TEXT if hands is None or hands.allows(each.deed) else DISABLED) for each in entries]
-    open_menu_at(ui, pixel, ui.px(WIDTH), rows, take)
+    open_menu_at(ui, pixel, ui.px(WIDTH), rows, take, stage.camera.viewport)
     return True
 
 
@@ -89,14 +102,27 @@ def _entries(stage: Stage, particle: int) -> list[_Offer]:
     world, state = playback.session.world, playback.current
     form, entries = _form_of(world, particle), list[_Offer]()
     if form is not None:
-        entries = [_Offer(f"Make it {word}", "firmness", partial(_softened, world, form, word)) for word in SOFTNESSES]
+        entries = [_Offer(f"Make it {word}", "firmness", partial(_softened, world, form, word)) for word in WORDS]
     entries += [_Offer(text, "mass", partial(_weighed, particle, factor)) for text, factor in WEIGHTS]
+    body = world.particle_names[particle].partition(".")[0]
+    if any(body in joined.names and "kit" not in joined.definition for joined in world.joined):
+        entries.append(_Offer(COLOUR, "", list))
     is_fixed = not (state.inverse_mass[state.owner == state.owner[particle]] > 0.0).any()
     return [
         *entries,
         _Offer("Let it move" if is_fixed else "Fix it here", "pin", lambda: freezing(particle, playback.current)),
         _Offer("Copy it", "add", lambda: _copied(stage, particle)),
         _Offer("Delete it, with what hangs on it", "remove", lambda: [Remove(particle=particle)]),
+    ]
+
+
+def _axle_entries(state: Snapshot, axle: Axle) -> list[_Offer]:
+    """Entries of the menu for an axle."""
+    hub, other = int(axle.slots[0]), NO_MOTOR if axle.has_motor else MOTOR
+    return [
+        _Offer(other, "add", lambda: refitted(state, axle, not axle.has_motor)),
+        _Offer(LET_GO, "pin", lambda: [Unpin(hub)]) if axle.is_pinned else _Offer(HOLD, "pin", lambda: [Pin(hub)]),
+        _Offer(TAKE_OUT, "remove", lambda: taken_out(axle)),
     ]
 
 
@@ -135,5 +161,6 @@ def _copied(stage: Stage, particle: int) -> list[Command]:
         box: Loop = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
         by = lift([box], state) if playback.level.has_contacts else 0.0
         if by is not None:
-            return list(copying_commands(playback.level, playback.session.world, particle, (dx, dy + by)))
+            world, way = playback.session.world, (dx, dy + by)
+            return list(in_own_groups(copying_commands(playback.level, world, particle, way)))
     raise EditError(NO_ROOM)

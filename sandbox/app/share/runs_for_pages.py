@@ -14,7 +14,7 @@ from sandbox.level.plan.actuators import driving_keys
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.actions import RuleActions
-from sandbox.session.commands import CommandError, Redo, Undo, apply
+from sandbox.session.commands import CommandError, Redo, SetColour, Undo, apply
 from sandbox.session.commands.records import ScriptLine, from_record, script_of
 from sandbox.session.replay.format import TICK_DIGITS
 from sandbox.session.replay.link import fragment_of, level_record
@@ -37,7 +37,7 @@ class RunForPages(NamedTuple):
 
 def is_for_pages(line: ScriptLine) -> bool:
     """Whether pages carry out a command as it is."""
-    return line.record["type"] not in (Undo.type, Redo.type) and not _is_defined(line.record)
+    return line.record["type"] not in (Undo.type, Redo.type, SetColour.type) and not _is_defined(line.record)
 
 
 def _is_defined(record: Mapping[str, Any]) -> bool:
@@ -65,7 +65,8 @@ def run_for_pages(
         # It is run twice.
         begun = 0.5
         script = yield from _without_undone(level, script, ticks)
-    world, made = build_world(level), []
+    world, made = build_world(level), list[ScriptLine]()
+    paints = [line.record for line in script if line.record["type"] == SetColour.type]
     hashes, actions = [hash_of(world)], RuleActions(level, world)
 
     def stepped(tick: int) -> Iterator[int]:
@@ -77,8 +78,10 @@ def run_for_pages(
 
     for line in script:
         yield from map(part, stepped(line.tick))
+        if line.record in paints:
+            continue
         try:
-            made.append(replace(line, record=carried_out(level, world, line.record)))
+            made.append(replace(line, record=carried_out(level, world, line.record, paints)))
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
     yield from map(part, stepped(ticks))
@@ -96,18 +99,27 @@ def _without_undone(
     return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
 
 
-def carried_out(level: Level, world: LevelWorld, record: dict[str, Any]) -> dict[str, Any]:
-    """Carry out a command; its record, with a kit in place of definitions. Raises CommandError."""
+def carried_out(
+    level: Level, world: LevelWorld, record: dict[str, Any], paints: Sequence[dict[str, Any]] = ()
+) -> dict[str, Any]:
+    """Carry out a command; its record, with a kit in place of definitions. Raises CommandError.
+
+    paints: the commands that paint later; pages show what joins in its last colour.
+    """
     before, kit = {"particle": world.particle_count, "spring": world.spring_count}, None
+    command = from_record(record, world)
     if _is_defined(record):
-        definition = {name: value for name, value in record.items() if name != "type" and value is not None}
+        definition = {name: value for name, value in vars(command).items() if value is not None}
         try:
             kit = Joiners(world, definition).kit(world)
         except LevelError as error:
             raise CommandError(str(error)) from None
-    apply(world, from_record(record, world))
+    apply(world, command)
     if kit is None:
         return record
+    for paint in paints:
+        if str(paint["particle"]).partition(".")[0] in world.joined[-1].names:
+            apply(world, from_record(paint, world))
     keys = {key: [list(each) for each in parts] for key, parts in driving_keys(kit.level).items()}
     look = _in_own_slots(joined_scene(level, world, before), before)
     for join in look.get("joins", ()):

@@ -128,12 +128,16 @@ def open_menu(
 
 
 def open_menu_at(
-    ui: Ui, pixel: tuple[float, float], width: int, rows: Sequence[Row], take: Callable[[int], object]
-) -> RowList:
-    """Open a menu of rows at a place [pixels], or as near to it as the window lets it stand whole; as `open_menu`."""
-    height = min(_menu_height(ui, rows), ui.size[1])
-    left, top = min(round(pixel[0]), ui.size[0] - width), min(round(pixel[1]), ui.size[1] - height)
-    return _menu(ui, pygame.Rect(max(left, 0), top, width, height), rows, None, take)
+    ui: Ui, pixel: tuple[float, float], width: int, rows: Sequence[Row], take: Callable[[int], object],
+    within: tuple[int, int, int, int],
+) -> RowList:  # fmt: skip
+    """Open a menu of rows at a place [pixels], or as near to it as a part of the window lets it stand whole.
+
+    within: left, top, width, height [pixels]. Else as `open_menu`.
+    """
+    room = pygame.Rect(within)
+    place = pygame.Rect(round(pixel[0]), round(pixel[1]), width, min(_menu_height(ui, rows), room.height))
+    return _menu(ui, place.clamp(room), rows, None, take)
 
 
 def _menu_height(ui: Ui, rows: Sequence[Row]) -> int:

@@ -32,6 +32,8 @@ from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
 from sandbox.level.kinds.geometry import Points
 from sandbox.level.kinds.mesh import MeshDef
+from sandbox.level.kinds.wheel import WheelDef
+from sandbox.level.plan.surfaces import DEFAULT_GROUP, group_bits
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.keeping.equipment import FirmBody, Firmness
 from sandbox.physics.softness.firmness import FirmnessRange
@@ -277,7 +279,7 @@ def keep_added(document: Document, world: LevelWorld) -> Document:
     They start at rest as they stand now, in their looks; what was pinned and cut stays so.
     """
     level, names = _with_things(document.level, world)
-    level = _with_springs(level, world, names)
+    level = _with_springs(_with_groups(level, world, names), world, names)
     return document if level is document.level else replace(document, level=checked(level))
 
 
@@ -334,6 +336,28 @@ def _with_joined(level: Level, world: LevelWorld, joined: JoinedLevel, names: di
         springs=(*level.springs, *springs),
         materials=materials | level.materials,
     )
+
+
+def _with_groups(level: Level, world: LevelWorld, names: dict[str, str]) -> Level:
+    """The level whose added bodies touch what they touch in the world: what passes another does so there."""
+    bits = group_bits(world.level)
+    first = {new: _particles(world, name)[0] for name, new in names.items() if len(_particles(world, name))}
+    group, collides = ({new: int(rows[slot]) for new, slot in first.items()} for rows in (world.group, world.collides))
+    # Wheels that pass their mounts say so themselves.
+    wheels = {body.id for body in level.bodies if isinstance(body, WheelDef) and not body.touches_mount}
+    passing = [each for each in collides.values() if each & bits[DEFAULT_GROUP]]
+    bits |= {
+        new: bit for new, bit in group.items()
+        if new not in wheels and bit not in bits.values() and any(each & bit == 0 for each in passing)
+    }  # fmt: skip
+    named = {bit: name for name, bit in bits.items() if name != DEFAULT_GROUP}
+    bodies = []
+    for body in level.bodies:
+        touched = tuple(name for name, bit in bits.items() if collides.get(body.id, -1) & bit)
+        more: dict[str, Any] = {"collides": touched} if len(touched) < len(bits) else {}
+        more |= {"collision_group": named[group[body.id]]} if group.get(body.id) in named else {}
+        bodies.append(replaced(body, **more) if more else body)
+    return replaced(level, bodies=tuple(bodies)) if level.has_contacts else level
 
 
 def _as_played(body: BodyDef, world: LevelWorld, name: str, times: float) -> BodyDef:

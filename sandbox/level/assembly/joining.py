@@ -31,7 +31,7 @@ class Joiners:
     """The bodies of a definition, checked and built, before they join a world.
 
     definition: `body`, and optionally `others`, `springs`, `welds` and `materials`, as in a level file. Springs and
-    welds join these bodies, by their ids in the definition. Raises LevelError with every fault.
+    welds join these bodies, by their ids in the definition; `passes`: see AddBody. Raises LevelError with every fault.
     """
 
     def __init__(self, world: LevelWorld, definition: Mapping[str, Any]) -> None:
@@ -86,11 +86,13 @@ class Joiners:
         # Pieces of a body that lacks springs have owners of their own.
         body_of = np.array([body for body, _ in names.particles])
         group, collides = np.zeros((2, self.particles), np.int64)
+        usual, others, passed = self._usual_groups(world, bits)
         for index, said in enumerate(self._said):
             mine = body_of == index
-            group[mine] = bits[said.get("collision_group") or DEFAULT_GROUP]
+            group[mine] = bits[said["collision_group"]] if "collision_group" in said else usual
             named = sum(bits[name] for name in dict.fromkeys(said["collides"])) if "collides" in said else None
-            collides[mine] = built.collides[: self.particles][mine] if named is None else named
+            more = others if DEFAULT_GROUP in said.get("collides", ()) else 0
+            collides[mine] = (built.collides[: self.particles][mine] if named is None else named | more) & ~passed
         touches = level.has_contacts
         columns = columns_of(
             built, {"group": group, "collides": collides * touches}, free_wheels(level) if touches else []
@@ -133,6 +135,17 @@ class Joiners:
         if any(bit > ALL_GROUPS for bit in found.values()):
             raise LevelError(SOURCE, [("", "there are too many collision groups")])
         return found
+
+    def _usual_groups(self, world: LevelWorld, bits: Mapping[str, int]) -> tuple[int, int, int]:
+        """Bits: the group of bodies that name none, those that go with the default group, and those that are passed."""
+        usual, passes = bits[DEFAULT_GROUP], self.definition.get("passes")
+        if passes is None:
+            return usual, 0, 0
+        used = int(np.bitwise_or.reduce(world.group[world.particle_active], initial=0)) | sum(bits.values())
+        touching = world.particle_active & (world.collides & usual != 0)
+        free = int(np.bitwise_and.reduce(world.collides[touching], initial=ALL_GROUPS)) & ~used
+        passed = int(np.bitwise_or.reduce(world.group[list(passes)], initial=0))
+        return free & -free or usual, ALL_GROUPS & ~sum(bits.values()), passed
 
     def check_room(self, world: LevelWorld) -> None:
         """Raise LevelError if the bodies could not join a world."""

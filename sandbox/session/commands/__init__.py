@@ -20,6 +20,7 @@ from sandbox.session.commands.joining import AddBody
 from sandbox.session.commands.keys import HoldKey
 from sandbox.session.commands.materials import ScaleMass, SetCoefficients
 from sandbox.session.commands.moving import MoveBody
+from sandbox.session.commands.painting import SetColour
 from sandbox.session.commands.pinning import Pin, Unpin
 from sandbox.session.commands.pushing import Push
 from sandbox.session.commands.removing import Remove
@@ -47,6 +48,7 @@ __all__ = [
     "ScaleMass",
     "SetAir",
     "SetCoefficients",
+    "SetColour",
     "SetDrive",
     "SetFirmness",
     "SetGravity",

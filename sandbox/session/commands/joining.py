@@ -7,6 +7,7 @@ from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.assembly.joining import join_definition
 from sandbox.level.format.level_error import LevelError
 from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.named import ParticleSlot
 
 Definition = dict[str, Any]
 
@@ -17,6 +18,8 @@ class AddBody(Command):
 
     others: further bodies that belong to it, the next in order; springs, welds: between these bodies, which go by their
     ids in the definition; materials: those that the world does not have. kit: bodies as rows, in place of all these.
+    passes: where it is said, the bodies have a collision group of their own, if one is free, and touch nothing of the
+    groups of these particles: () passes nothing yet, but what comes later may pass it.
     """
 
     type = "add_body"
@@ -26,6 +29,7 @@ class AddBody(Command):
     welds: tuple[tuple[str, str], ...] | None = None
     materials: dict[str, Any] | None = None
     kit: Definition | None = None
+    passes: tuple[ParticleSlot, ...] | None = None
 
     def carry_out(self, world: LevelWorld, giver: int) -> None:
         fields = {name: value for name, value in vars(self).items() if value is not None}
