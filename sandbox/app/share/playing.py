@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.app.base.loop import at_once
-from sandbox.app.base.sag_map import SagMap, own_of, sag_sentence, scale_of, subject_words, word_pairs
+from sandbox.app.base.sag_map import NO_SAG, SagMap, own_of, sag_sentence, scale_of, subject_words, word_pairs
 from sandbox.app.draw.picture import particles_of
 from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
@@ -315,6 +315,6 @@ def _words(
     return {
         "words": pairs,
         "subject": subject_words(subject.name, support),
-        "says": {"sag": said.sag, "flat": said.flat, "flat_from": FLAT},
+        "says": {**said._asdict(), "flat_from": FLAT, "none_below": NO_SAG},
         "map": SagMap.of(motion, scale_of(motion, pairs, own)).as_data(),
     }

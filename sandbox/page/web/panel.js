@@ -169,6 +169,7 @@ export class Panel {
   #sentence({ says, sags }, pair) {
     if (!says || !sags) return '';
     const sag = pair.every((value) => value === 1) ? 0 : sags.at(...pair);
+    if (sag < says.none_below) return `${says.none}.`;
     return `${sag >= says.flat_from ? says.flat : says.sag.replace('{}', perCent(sag))}.`;
   }
 

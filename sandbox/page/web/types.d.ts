@@ -251,7 +251,7 @@ export interface MaterialRow {
   is_first: boolean;
   words: Record<string, Point>;
   subject?: string;
-  says?: { sag: string; flat: string; flat_from: number };
+  says?: { sag: string; flat: string; none: string; flat_from: number; none_below: number };
   map?: SagMapData;
 }
 
