@@ -9,7 +9,7 @@ from sandbox.session.session import Session
 
 TUNING: tuple[type[Command], ...] = (SetCoefficients, SetFirmness, SetInflation, SetGravity, SetAir, SetSolver)
 # What such a command is about, where it is not about all.
-_SUBJECTS = ("material", "body")
+SUBJECTS = ("material", "body")
 
 
 def tuning_of(session: Session, kinds: Collection[type[Command]] = TUNING) -> list[Command]:
@@ -22,7 +22,7 @@ def tuning_of(session: Session, kinds: Collection[type[Command]] = TUNING) -> li
             values = {name: value for name, value in asdict(command).items() if value is not None}
             if len(values) == 1:
                 continue
-            key = type(command), frozenset(values), *(values.get(name) for name in _SUBJECTS)
+            key = type(command), frozenset(values), *(values.get(name) for name in SUBJECTS)
             found.pop(key, None)
             found[key] = command
     return list(found.values())

@@ -112,7 +112,7 @@ class Panel(PropertyOwner):
         hands = playback.level.hands
         self._open = dict.fromkeys(SECTIONS, True) | {MORE: False} | shape.open
         # What is for engineers alone is shown where MORE is open, which levels with hands do without.
-        self._is_plain = hands is not None or not self._open[MORE]
+        self._is_plain = (hands is not None or not self._open[MORE]) and shape.sweeps.measure is None
         self.firmness = FirmnessRows(playback, say, self._is_plain)
         if playback.level.look is not None and playback.level.look.material is not None:
             self.firmness.speak_of(self.material)
@@ -429,7 +429,8 @@ class Panel(PropertyOwner):
         self.material = material
         if self.firmness.body != ALL_BODIES and material != self.firmness.material_of(self.firmness.body):
             self.firmness.choose_body(ALL_BODIES)
-            self.firmness.menu.show_chosen(ALL_BODIES)
+            if self.firmness.shown:
+                self.firmness.menu.show_chosen(ALL_BODIES)
         self.menu.show_chosen(ALL_MATERIALS if material is None else self._material_names()[material])
 
     def _take_home(self) -> None:

@@ -71,7 +71,7 @@ class Page {
     this.catalogue = element('select', { id: 'catalogue', className: 'part' }, new Option('More', ''),
       ...level.about.adding.catalogue.map(({ id, name }) => new Option(name[0].toUpperCase() + name.slice(1), id)));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
-      again: byId('end-again'), on: byId('end-on') });
+      again: byId('end-again'), was: byId('end-was'), on: byId('end-on') });
     this.menu = new Menu(byId('menu'), this.toy);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;

@@ -124,6 +124,7 @@ export interface Outcome {
   text: string;
   stars: number;
   tick: number;
+  rule: number;
 }
 
 // What the module of kernels exports.
@@ -298,6 +299,8 @@ export interface Goals {
   goal: string;
   counters: [place: number, text: string][];
   hasClock: boolean;
+  // What the second and the third star take, by the rules that win.
+  stars: Record<number, string[]>;
 }
 
 // Gives a world of its own before the first tick.
