@@ -14,7 +14,7 @@ from sandbox.app.widgets.dialogs import Choice
 from sandbox.app.widgets.styles import PANELS, BoxLook, box
 from sandbox.app.widgets.texts import line_height, shortened, wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.app.widgets.widget import Widget
+from sandbox.app.widgets.widget import Widget, WindowLayout
 from sandbox.session.outcome import Outcome
 
 # Sizes in layout units.
@@ -90,7 +90,7 @@ class ResultCard:
         width = min(ui.px(_WIDTH), area.width - 2 * ui.px(_AROUND))
         inside = width - 2 * inset
         has_emblem = area.height >= ui.px(_LOW)
-        tall = _height_of(ui, ending, inside, has_emblem)
+        tall = sum(picture.height + below for picture, below in _pictures(ui, ending, inside, has_emblem))
         # The main button is as wide as the card, and others are two in a row.
         rows = [choices[:1], *(choices[first : first + 2] for first in range(1, len(choices), 2))]
         height = tall + len(rows) * (ui.px(_BUTTON) + gap) - gap + 2 * inset
@@ -137,24 +137,12 @@ def _free_place(ui: Ui, area: pygame.Rect, size: tuple[int, int], things: NDArra
     return next(each for each, count in zip(found, hidden, strict=True) if count <= min(hidden) + _AS_FREE)
 
 
-def _lines_of(ui: Ui, ending: Ending, width: int) -> list[str]:
-    return wrapped(ending.words, ui.font(_WORDS_SIZE, True), width, _WORDS_LINES)
-
-
-def _height_of(ui: Ui, ending: Ending, width: int, has_emblem: bool) -> int:
-    """Height of a face of that width [pixels]."""
-    gap, words = ui.px(_GAP), len(_lines_of(ui, ending, width)) * line_height(ui.font(_WORDS_SIZE, True))
-    above = ui.px(_EMBLEM) + gap if has_emblem else 0
-    stars = ui.px(_STAR) + gap if ending.outcome.is_won else 0
-    return above + words + gap + stars + len(ending.lines) * line_height(ui.font(_LINE_SIZE)) + gap
-
-
 class _Face(Widget):
     """The part of a card above its buttons."""
 
     def __init__(self, ui: Ui, place: pygame.Rect, ending: Ending, panel: Widget, has_emblem: bool) -> None:
         super().__init__(ui, place, panel)
-        self._ui, self._ending, self._has_emblem = ui, ending, has_emblem
+        self._ending, self._has_emblem = ending, has_emblem
         # How many stars have come, and how large the last one is.
         self._stars = (0, 1.0)
 
@@ -169,36 +157,45 @@ class _Face(Widget):
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """Emblem, words, stars, time and score, each in the middle."""
-        ui, is_won = self.ui, self._ending.outcome.is_won
-        surface, middle, gap = pygame.Surface(size, pygame.SRCALPHA), size[0] // 2, ui.px(_GAP)
-        y, bold = 0, ui.font(_WORDS_SIZE, True)
-        if self._has_emblem:
-            side, colour = ui.px(_EMBLEM), ACCENT if is_won else DANGER
-            shade = mixed(PANELS["dialog"].back, colour, 0.22)
-            surface.blit(box((side, side), BoxLook(shade, shade, colour), side // 2, 1), (middle - side // 2, 0))
-            emblem = painted_icon("won" if is_won else "lost", ui.px(_EMBLEM_ICON), colour)
-            surface.blit(emblem, emblem.get_rect(center=(middle, side // 2)))
-            y = side + gap
-        for line in _lines_of(self._ui, self._ending, size[0]):
-            text = bold.render(line, True, TEXT)
-            surface.blit(text, text.get_rect(midtop=(middle, y)))
-            y += line_height(bold)
-        y += gap
-        if is_won:
-            number, grown = self._stars
-            stars = painted_stars(number, ui.px(_STAR), grown)
-            surface.blit(stars, stars.get_rect(midtop=(middle, y)))
-            y += ui.px(_STAR) + gap
-        for parts in self._ending.lines:
-            self._paint_line(surface, y, parts)
-            y += line_height(ui.font(_LINE_SIZE))
+        surface, y = pygame.Surface(size, pygame.SRCALPHA), 0
+        for picture, below in _pictures(self.ui, self._ending, size[0], self._has_emblem, self._stars):
+            surface.blit(picture, ((size[0] - picture.width) // 2, y))
+            y += picture.height + below
         return surface
 
-    def _paint_line(self, surface: pygame.Surface, y: int, parts: Iterable[tuple[str, Colour]]) -> None:
-        """Write words beside each other, in the middle."""
-        font, gap, width = self.ui.font(_LINE_SIZE), 2 * self.ui.px(_GAP), surface.get_width()
-        pictures = [font.render(shortened(text, font, width), True, colour) for text, colour in parts]
-        x = (width - sum(each.width for each in pictures) - gap * (len(pictures) - 1)) // 2
-        for picture in pictures:
-            surface.blit(picture, (x, y))
-            x += picture.width + gap
+
+def _pictures(
+    ui: WindowLayout, ending: Ending, width: int, has_emblem: bool, stars: tuple[int, float] = (0, 1.0)
+) -> list[tuple[pygame.Surface, int]]:
+    """The pictures of a face of that width, from the top, each with the gap below it [pixels]."""
+    gap, bold, font, found = ui.px(_GAP), ui.font(_WORDS_SIZE, True), ui.font(_LINE_SIZE), []
+    if has_emblem:
+        found.append((_emblem(ui, ending.outcome.is_won), gap))
+    lines = wrapped(ending.words, bold, width, _WORDS_LINES)
+    found += [(bold.render(line, True, TEXT), 0) for line in lines[:-1]] + [(bold.render(lines[-1], True, TEXT), gap)]
+    if ending.outcome.is_won:
+        found.append((painted_stars(stars[0], ui.px(_STAR), stars[1]), gap))
+    found += [(_beside(font, parts, width, 2 * gap), 0) for parts in ending.lines]
+    return [*found[:-1], (found[-1][0], gap)]
+
+
+def _emblem(ui: WindowLayout, is_won: bool) -> pygame.Surface:
+    side, colour = ui.px(_EMBLEM), ACCENT if is_won else DANGER
+    shade = mixed(PANELS["dialog"].back, colour, 0.22)
+    picture = box((side, side), BoxLook(shade, shade, colour), side // 2, 1).copy()
+    icon = painted_icon("won" if is_won else "lost", ui.px(_EMBLEM_ICON), colour)
+    picture.blit(icon, icon.get_rect(center=(side // 2, side // 2)))
+    return picture
+
+
+def _beside(font: pygame.font.Font, parts: Iterable[tuple[str, Colour]], width: int, gap: int) -> pygame.Surface:
+    """Words in a line of at most that width [pixels], with gaps between them."""
+    pictures = [font.render(shortened(text, font, width), True, colour) for text, colour in parts]
+    line = pygame.Surface(
+        (sum(each.width for each in pictures) + gap * (len(pictures) - 1), line_height(font)), pygame.SRCALPHA
+    )
+    x = 0
+    for picture in pictures:
+        line.blit(picture, (x, 0))
+        x += picture.width + gap
+    return line
