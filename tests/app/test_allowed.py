@@ -3,6 +3,8 @@
 import pygame
 import pytest
 
+from sandbox.app.panel.panel import MORE
+from sandbox.app.widgets.dialogs import ask
 from sandbox.level.reading.files import load_level
 from sandbox.session.commands import CutSprings
 from tests.app.conftest import small_level
@@ -63,3 +65,30 @@ def test_after_all_springs_of_a_material_are_gone_the_panel_says_so(driver):
     driver.playback.submit(CutSprings((4,)))
     driver.frames(20)
     assert driver.panel.note.text.startswith("Nothing of it is left here")
+
+
+def test_who_has_not_opened_more_reads_no_theory(open_app):
+    driver = open_app(load_level("jelly_pile"), more=False)
+    driver.measure()
+    panel = driver.panel
+    assert panel.maps is None and panel.note.text == "" and panel.firmness.text.text.startswith("They sag by at most")
+    assert not any(word in panel.firmness.text.text for word in ("swings", "creeps", "at rest"))
+    driver.app.play.fold(MORE)
+    driver.measure()
+    assert driver.panel.maps is not None and driver.panel.note.text
+
+
+def test_a_level_with_ground_shows_more_of_what_is_above_it(open_app):
+    driver = open_app(load_level("low_door"))
+    _, top, _, height = driver.stage.camera.viewport
+    _, ground = driver.stage.camera.to_pixels((-12.0, 0.0))
+    assert top + height - ground < 0.4 * height
+
+
+def test_enter_answers_a_dialog_after_a_click_beside_its_field(driver):
+    answers = []
+    ask(driver.app.ui, "Name it", "", "rope", "Save", answers.append)
+    driver.frames(2)
+    driver.app.ui.blur()
+    driver.key(pygame.K_RETURN)
+    assert answers == ["rope"] and not driver.app.ui.has_sheet
