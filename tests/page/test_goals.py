@@ -83,3 +83,18 @@ def test_a_button_holds_a_key_that_a_rule_asks_for(browser: Browser, tmp_path: P
     tab.evaluate("page.toy.drives.press('g')")
     assert tab.evaluate(UNTIL_END)
     assert text_of(tab, "#end-card p").startswith("All down")
+
+
+def test_what_hands_may_not_do_has_no_button_no_key_and_no_part_of_the_panel(browser: Browser, tmp_path: Path) -> None:
+    tab = opened(browser, tmp_path, page_of(answering(hands={"may": ["grab", "air"]})))
+    shown = "['drag', 'pin', 'cut', 'make', 'tune'].filter((id) => !document.getElementById(id).hidden)"
+    assert tab.evaluate(shown) == ["drag", "tune"]
+    for key in "cpjbh":
+        tab.key(key)
+    parts = (
+        "['.springs', '.world', '.engineers'].filter((each) => document.querySelector(`#panel ${each}`)?.offsetHeight)"
+    )
+    assert tab.evaluate("page.toy.hands.tool") == "drag" and tab.evaluate(parts) == [".world"]
+    tab = opened(browser, tmp_path, page_of(answering(hands={"may": []})))
+    tab.key("h")
+    assert tab.evaluate(shown) == [] and tab.evaluate("document.getElementById('panel').hidden") is True

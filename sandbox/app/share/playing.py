@@ -84,7 +84,7 @@ def playable_in_slices(
     until = [line for line in script if ticks is not None and line.tick <= ticks]
     played = None if ticks is None else (yield from run_for_pages(level, until, ticks))
     world = build_world(level)
-    scene = scene_of(level, take(world))
+    scene, hands = scene_of(level, take(world)), level.hands
     data = {
         "name": level.name,
         "scene": scene,
@@ -94,6 +94,9 @@ def playable_in_slices(
         "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
         "goals": _goals(level, world),
+        "absent": []
+        if hands is None
+        else [name for name, any_of in _NEEDS.items() if not any(map(hands.allows, any_of))],
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "link": level_record(level) | {"physics": PHYSICS_VERSION},
@@ -110,6 +113,14 @@ def playable_in_slices(
 def _recording(played: RunForPages) -> dict[str, Any]:
     commands = [{"tick": line.tick, "gesture": line.gesture, "named": line.record} for line in played.script]
     return {"commands": commands, "hashes": played.hashes}
+
+
+# Buttons of a page and parts of its panel, by what hands have to be allowed for them: one of these.
+_NEEDS = {
+    "drag": ("grab",), "pin": ("pin",), "cut": ("cut",), "make": ("add", "remove"), "erase": ("remove",),
+    **dict.fromkeys(("jelly", "wood", "steel", "rope", "spring", "rod", "parts", "catalogue"), ("add",)),
+    "springs": ("material",), "world": ("air",), "engineers": ("solver",), "tune": ("material", "air", "solver"),
+}  # fmt: skip
 
 
 def _checks(level: Level, world: World) -> list[dict[str, Any]]:

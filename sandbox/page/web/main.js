@@ -160,6 +160,11 @@ class Page {
       toy.pause();
       toy.goTo(Number(byId('time').value));
     });
+    // What hands may not do here has no button, no part of the panel and no key.
+    for (const name of toy.level.absent) {
+      for (const each of document.querySelectorAll(`#${name}, #panel .${name}`)) Object.assign(each, { hidden: true });
+      delete acts[name];
+    }
     // The toy hears keys first.
     addEventListener('keydown', (event) => {
       const isCommand = event.ctrlKey || event.metaKey;

@@ -286,6 +286,8 @@ export interface Level {
   ramp_ticks: number;
   checks: Check[];
   goals: Goals;
+  // What hands may not use: buttons, and parts of the panel.
+  absent: string[];
   keys: Record<string, [part: number, value: number][]>;
   header: string;
   link: LevelLink;
