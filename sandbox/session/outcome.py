@@ -69,6 +69,19 @@ def stars_of(stars: StarsDef | None, level: Level, state: World | Snapshot, tick
     return 1 + sum(value >= bound if is_least else value <= bound for bound in (stars.second, stars.third))
 
 
+def star_words(level: Level, rule: int) -> tuple[str, ...]:
+    """What the second and the third star of a rule that wins take, in words; () where every win has all."""
+    action = _ending(level, rule)
+    stars = None if action is None or action.win is None else action.stars
+    if stars is None:
+        return ()
+    bound = "at least" if stars.third > stars.second else "at most"
+    named = {counter.id: counter.text or counter.id for counter in level.counters}
+    about, unit = ("", " s") if stars.counter is None else (f"{named.get(stars.counter, stars.counter)} ", "")
+    values = (stars.second, stars.third)
+    return tuple(f"{2 + number} stars: {about}{bound} {value:g}{unit}" for number, value in enumerate(values))
+
+
 def last_checkpoint(level: Level, state: World | Snapshot) -> int | None:
     """The tick that a restart goes back to: at its end a checkpoint fired last; None: to the beginning.
 

@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.widgets.fonts import FONTS_HELD, SafeFont, font_file, plain_font, runs
+from sandbox.app.widgets.fonts import FONTS_HELD, SafeFont, code_font, font_file, plain_font, runs
 
 
 @pytest.fixture(autouse=True)
@@ -86,3 +86,14 @@ def test_other_scripts_stand_beside_the_font_s_own_letters_at_their_height(other
     place = pygame.Rect(font.size("Rope ")[0], 0, alone[0], picture.get_height())
     assert picture.subsurface(place).get_bounding_rect().width > 0
     assert len(font.metrics(f"Rope {other}")) == len(f"Rope {other}")
+
+
+@pytest.mark.parametrize("bold", [False, True])
+def test_zeros_have_a_stroke_in_code_alone(bold):
+    def middle(font):
+        zero = font.render("0", True, (255, 255, 255))
+        place = pygame.mask.from_surface(zero).get_bounding_rects()[0]
+        return zero.get_at(place.center).a
+
+    assert middle(plain_font(60, bold)) == 0
+    assert middle(code_font(60)) > 0

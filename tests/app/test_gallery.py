@@ -7,9 +7,12 @@ import pygame
 import pytest
 
 from sandbox.app.base.desktop import chosen_path, free_path, plain_name
+from sandbox.app.gallery.gallery import GO_ON, WIN, WIN_PLACE
+from sandbox.app.run.playback import Playback
 from sandbox.editor.storage.preferences import remember
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import shipped_levels
+from sandbox.session.commands import AddParticle
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.scene import SceneTaker, scene_lines
 from tests.app.conftest import Driver, small_level
@@ -28,17 +31,51 @@ def test_every_shipped_level_has_a_card_with_a_picture(open_app):
 
 def test_a_click_on_a_card_opens_its_level(open_app):
     driver = open_app()
-    card = driver.app.gallery.cards[1]
+    card = driver.app.gallery.cards[2]
     driver.click_widget(card)
     assert driver.app.gallery is None
     assert driver.playback.level.name == card.name
+
+
+def puzzles(driver):
+    """The group of levels that can be won, and where it is seen [pixels]."""
+    gallery = driver.app.gallery
+    group = next(group for group in gallery.groups if group.title == "Puzzles")
+    return group, group.top - gallery.area.offset
+
+
+def test_a_card_among_the_first_leads_to_what_can_be_won_and_the_gallery_comes_back_where_it_was_left(open_app):
+    driver = open_app()
+    group, _ = puzzles(driver)
+    driver.click_widget(driver.app.gallery.cards[WIN_PLACE])
+    assert driver.app.gallery.cards[WIN_PLACE].name == WIN and puzzles(driver)[1] == 0
+    driver.app.gallery.scroll(-1.0)
+    where = puzzles(driver)[1]
+    driver.click_widget(group.cards[3])
+    assert driver.playback.level.rules
+    driver.key(pygame.K_g)
+    # A row of what was played lies above now.
+    assert abs(puzzles(driver)[1] - where) <= 1 and driver.app.gallery.groups[0].cards
+
+
+def test_runs_that_were_kept_stand_by_their_levels(open_app):
+    driver = open_app(small_level(name="One"))
+    for number, name in enumerate(("Two", "One", "Two")):
+        driver.playback.submit(AddParticle((0.5 + number, 2.0), mass=2.0, radius=0.1))
+        driver.frames(5)
+        driver.app.start(Playback(small_level(name=name)))
+    driver.app.open_gallery("mine")
+    driver.frames(2)
+    kept = {group.title: len(group.cards) for group in driver.app.gallery.groups if group.cards}
+    assert kept == {"One": 2, "Two": 1}
 
 
 def test_arrow_keys_and_enter_open_a_level_too(open_app):
     driver = open_app()
     driver.key(pygame.K_DOWN)
     driver.key(pygame.K_RIGHT)
-    name = driver.app.gallery.cards[1].name
+    driver.key(pygame.K_RIGHT)
+    name = driver.app.gallery.cards[2].name
     driver.key(pygame.K_RETURN)
     assert driver.playback.level.name == name
 
@@ -198,7 +235,7 @@ def test_enter_opens_the_first_hit_which_is_then_played_lately(open_app):
     driver.key(pygame.K_RETURN)
     assert driver.playback.level.name == "Girder"
     driver.app.open_gallery()
-    lately = next(group for group in driver.app.gallery.groups if group.title == "Recently played")
+    lately = next(group for group in driver.app.gallery.groups if group.title == GO_ON)
     assert [card.name for card in lately.cards] == ["Girder"] and lately.is_shortcut
     assert not any(card.badge for card in driver.app.gallery.cards)
 

@@ -6,11 +6,12 @@ import numpy as np
 import pygame
 import pytest
 
+from sandbox.app.play.game import NOT_ENDED
 from sandbox.app.play.score import Chip, chips_of, time_text
 from sandbox.editor.storage.best_runs import best_recording, best_result
 from sandbox.editor.storage.preferences import remember
 from sandbox.level.reading.files import parse_level
-from sandbox.session.commands import SetGravity
+from sandbox.session.commands import SetCoefficients, SetGravity
 from sandbox.session.compare.comparison import verify
 from sandbox.session.outcome import outcome
 from sandbox.session.replay.reader import read_replay
@@ -37,6 +38,9 @@ RING = {
     "then": [{"count": "rings"}, {"say": "Through the ring!"}, {"sound": "bell"}, {"checkpoint": True}],
 }
 LATE = {"id": "late", "when": {"time": 0.9}, "then": [{"fail": "Too late"}]}
+ROPE = {"type": "rope", "id": "rope", "start": [2, 2], "end": [2.5, 2], "segments": 2, "pin": ["start"],
+        "material": "steel"}  # fmt: skip
+SHIFT = pygame.KMOD_SHIFT
 # In so many frames each of these runs has ended.
 MOST_FRAMES = 180
 
@@ -88,10 +92,93 @@ def test_a_win_pauses_where_it_happens_and_its_card_says_words_stars_and_time(fa
     assert falling.playback.clock.paused and falling.playback.session.tick == result.tick
     assert card.ending.words == "It is in!" and result.stars == 2
     assert card.ending.times[0][0] == f"Time {time_text(result.tick / 60)}"
-    assert list(card.buttons) == ["Again", "Keep watching"]
+    assert list(card.buttons) == ["Again", "Send this", "Race your best", "Keep watching"]
+    assert [words for words, _ in card.ending.lines[1]] == ["Rings 1"]
+    assert card.ending.next_star == "3 stars: at most 0.3 s"
     assert kinds == ["bell", "won", "star", "star"]
     assert "Through the ring!" in falling.notices
     assert "won" in falling.app.play.states()
+
+
+@pytest.mark.parametrize("size", [(1400, 900), (800, 600), (640, 440)])
+def test_the_card_stands_beside_what_happened(falling, size):
+    falling.app.display.window.size = size
+    play_to_the_end(falling)
+    card, stage = game(falling).card.panel.rect, falling.stage
+    assert pygame.Rect(stage.camera.viewport).contains(card)
+    assert not card.collidepoint(falling.pixel_of("ball"))
+    places = [button.rect for button in game(falling).card.buttons.values()]
+    assert all(card.contains(place) and place.collidelist(places[:k]) < 0 for k, place in enumerate(places))
+
+
+def test_the_card_is_had_again_by_a_click_on_the_stars_or_a_key_after_it_was_closed(falling):
+    falling.key(pygame.K_e, SHIFT)
+    assert game(falling).card is None and NOT_ENDED in falling.notices
+    play_to_the_end(falling)
+    ending = game(falling).card.ending
+    falling.click_widget(game(falling).card.buttons["Keep watching"])
+    falling.frames(10)
+    assert game(falling).card is None and not falling.playback.clock.paused
+    falling.click(game(falling).score.end.center)
+    assert game(falling).card.ending == ending and falling.playback.clock.paused
+    falling.key(pygame.K_ESCAPE)
+    falling.key(pygame.K_e, SHIFT)
+    assert game(falling).card.ending == ending
+
+
+def tuned(driver):
+    """Cs of the material of a run's first spring."""
+    return float(driver.world.stiffness[0])
+
+
+def test_again_keeps_what_was_tuned_and_as_it_was_does_not(open_app):
+    driver = open_app(level(WIN, bodies=[ROPE], materials={"steel": {"stiffness": 0.3, "damping": 0.3}}))
+    own = tuned(driver)
+    driver.playback.submit(SetCoefficients(stiffness=0.6, material=1))
+    driver.playback.submit(SetCoefficients(stiffness=0.07, material=1))
+    driver.playback.submit(SetGravity((1.0, -9.0)))
+    play_to_the_end(driver)
+    assert "As it was" in game(driver).card.buttons
+    driver.click_widget(game(driver).card.buttons["Again"])
+    assert tuned(driver) == 0.07 and driver.world.settings.gravity == (1.0, -9.0)
+    assert driver.playback.session.tick < 10 and driver.playback.scene() is None
+    for key in (pygame.K_r, pygame.K_r):
+        driver.key(key, SHIFT)
+    assert tuned(driver) == 0.07
+    play_to_the_end(driver)
+    driver.key(pygame.K_r, pygame.KMOD_CTRL | SHIFT)
+    assert tuned(driver) == own and driver.world.settings.gravity != (1.0, -9.0)
+    play_to_the_end(driver)
+    assert "As it was" not in game(driver).card.buttons
+
+
+def test_undo_after_again_brings_the_run_before_back_and_not_what_was_not_tuned(open_app):
+    driver = open_app(level(WIN, bodies=[ROPE], materials={"steel": {"stiffness": 0.3, "damping": 0.3}}))
+    driver.playback.submit(SetCoefficients(stiffness=0.07, material=1))
+    driver.frames(20)
+    tick = driver.playback.session.tick
+    driver.key(pygame.K_r)
+    assert tuned(driver) == 0.07
+    driver.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert driver.playback.session.tick >= tick and tuned(driver) == 0.07
+
+
+def test_without_a_goal_again_is_as_the_level_is(driver):
+    own = tuned(driver)
+    driver.playback.submit(SetCoefficients(stiffness=0.07))
+    driver.frames(20)
+    driver.key(pygame.K_r)
+    assert tuned(driver) == own
+
+
+def test_a_race_begins_again_with_the_ghost_which_no_other_level_has_then(falling, open_app):
+    play_to_the_end(falling)
+    while falling.app.best.moves:
+        falling.pass_unseen()
+    falling.click_widget(game(falling).card.buttons["Race your best"])
+    falling.frames(2)
+    assert game(falling).shows_ghost and falling.playback.session.tick < 10
+    assert not game(open_app(level(RING, WIN))).shows_ghost
 
 
 def test_a_fast_run_pauses_at_the_very_tick_too(falling):

@@ -4,7 +4,8 @@ import pygame
 import pytest
 
 from sandbox.app.base import desktop
-from sandbox.app.share.page import so_far
+from sandbox.app.share.page import NO_SITE, so_far
+from sandbox.app.widgets.field import Field
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddParticle, CutSprings
 from sandbox.session.compare.comparison import verify
@@ -35,33 +36,39 @@ def played(driver):
 
 def test_the_link_that_is_copied_is_the_run_without_what_was_undone(open_app, copied):
     driver = open_app(small_level())
+    driver.app.chosen.choose("link_site", "https://toys.example/play")
     session = played(driver)
     driver.key(pygame.K_l, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
-    driver.frames(2)
-    driver.type("https://toys.example/play")
-    driver.key(pygame.K_RETURN)
     driver.frames(60)
     (link,) = copied
-    assert link.startswith("https://toys.example/play#scene=")
+    assert link.startswith("https://toys.example/play#scene=") and not driver.app.ui.has_sheet
     replay = replay_of(link)
     assert 0 < replay.ticks <= session.tick and verify(replay) is None
     assert [line.record["type"] for line in replay.script] == ["add_particle"]
 
 
-def test_an_address_that_is_none_is_said_and_nothing_is_copied(open_app, copied):
-    driver = open_app(small_level())
-    played(driver)
-    driver.key(pygame.K_l, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
+def test_without_a_site_it_is_for_sandbox_open_and_a_toy_of_a_new_place_has_one_too(open_app, copied):
+    driver = open_app()
+    driver.app.documents.play_new()
     driver.frames(2)
-    driver.type("toys")
-    driver.key(pygame.K_RETURN)
-    driver.frames(10)
-    assert not copied and not driver.app.link_copying.moves
-    driver.key(pygame.K_BACKSPACE)
-    driver.type("s.example")
-    driver.key(pygame.K_RETURN)
+    driver.app.play.playback.submit(AddParticle((0.5, 2.0), mass=2.0, radius=0.1))
+    driver.frames(20)
+    driver.key(pygame.K_l, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
     driver.frames(60)
-    assert not copied, "the address has to begin with https://"
+    (link,) = copied
+    assert link.startswith("#scene=") and verify(replay_of(link)) is None
+    assert driver.notices[-1].endswith(NO_SITE)
+
+
+def test_an_address_that_is_none_is_said_in_the_settings_and_not_taken(open_app):
+    driver = open_app(small_level())
+    driver.app.act("settings")
+    driver.frames(2)
+    (field,) = [each for each in driver.app.ui.ring() if isinstance(each, Field)]
+    driver.fill(field, "toys.example")
+    assert driver.app.chosen["link_site"] == ""
+    driver.fill(field, "https://toys.example")
+    assert driver.app.chosen["link_site"] == "https://toys.example"
 
 
 def test_the_run_so_far_ends_as_the_world_is_now(open_app):

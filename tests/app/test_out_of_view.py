@@ -4,10 +4,10 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.play.problems import LEFT_VIEW
+from sandbox.app.play.problems import LEFT_VIEW, NOTHING_BACK
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.applied_forces import overlapping
-from sandbox.session.commands import MoveBody
+from sandbox.session.commands import CutSprings, MoveBody
 from tests.app.conftest import small_level
 from tests.app.test_following import flying, places
 from tests.support.wholes import some_and_whole
@@ -106,3 +106,33 @@ def test_a_flat_bridge_that_sags_under_its_weight_is_in_the_picture(open_app):
     driver = open_app(level)
     driver.frames(300)
     assert not button(driver).visible and LEFT_VIEW not in driver.notices
+
+
+FIRST_OUT = {"id": "waiting", "position": [40, 2], "radius": 0.2, "mass": 1}
+
+
+def test_what_was_out_at_the_start_and_stubs_of_cut_ropes_are_not_brought_back(open_app):
+    rope = {"type": "rope", "id": "thread", "start": [0, 0], "end": [4, 0], "segments": 8, "pin": ["start"],
+            "material": "steel"}  # fmt: skip
+    driver = open_app(small_level(bodies=[rope], particles=[FIRST_OUT]))
+    driver.frames(120)
+    assert not button(driver).visible
+    driver.playback.submit(CutSprings((6,)))
+    driver.playback.submit(MoveBody(driver.world.particle_slot("thread.end"), (90.0, 0.0), at_rest=True))
+    driver.frames(120)
+    assert not button(driver).visible
+    driver.playback.submit(CutSprings((1,)))
+    driver.playback.submit(MoveBody(driver.world.particle_slot("thread.3"), (80.0, 0.0), at_rest=True))
+    driver.frames(120)
+    assert button(driver).visible and button(driver).text == "Bring back 1"
+
+
+def test_in_a_level_with_a_goal_nothing_is_brought_back_and_the_key_says_why(open_app):
+    rule = {"id": "late", "when": {"time": 500}, "then": [{"win": "Well waited"}]}
+    driver = open_app(small_level(goal="Wait", rules=[rule]))
+    driver.playback.submit(MoveBody(driver.world.particle_slot("pair.end"), (90.0, 0.0), at_rest=True))
+    driver.frames(120)
+    assert driver.app.play.problems.out_of_view.lost_count == 1 and not button(driver).visible
+    driver.app.act("bring_back")
+    driver.frames(2)
+    assert NOTHING_BACK in driver.notices and driver.world.position[:, 0].max() > 80.0

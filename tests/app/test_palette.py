@@ -228,14 +228,14 @@ def test_what_has_no_room_beside_panel_and_graphs_is_in_a_menu(player):
     assert player.stage.tool_name == hidden and palette.buttons[_MORE].is_selected
 
 
-def test_tools_that_a_level_keeps_away_are_greyed_and_parts_that_are_left_are_counted(open_app):
+def test_tools_that_a_level_keeps_away_are_not_offered_and_parts_that_are_left_are_counted(open_app):
     level = small_level(hands={"may": ["add", "cut"], "at_most": {"add": 2}})
     driver = open_app(level)
     driver.key(pygame.K_b)
     play = driver.app.play
-    greyed = {name for name, button in play.palette.buttons.items() if not button.is_enabled}
-    assert greyed == {"push", "wind", "delete", "freeze"}
-    assert [play.toolbar.tools[name].is_enabled for name in ("drag", "pin", "cut")] == [False, False, True]
+    assert {*NAMES, CATALOGUE} - set(play.palette.buttons) == {"push", "wind", "delete", "freeze"}
+    offered = {*play.toolbar.buttons, *play.toolbar.left_out}
+    assert {"tool_drag", "tool_pin", "tool_cut", "panel"} & offered == {"tool_cut"}
 
     def left():
         chips = chips_of(driver.playback.level, driver.playback.current, None)

@@ -3,8 +3,9 @@
 import pygame
 import pytest
 
+from sandbox.app.base.shortcuts import label_of
 from sandbox.app.play.problems import LEFT_VIEW as LEFT_VIEW
-from sandbox.app.play.toolbar import LEAST_NAME, LEFT, RIGHT, fitting
+from sandbox.app.play.toolbar import LEAST_NAME, LEFT, MENU, RIGHT
 from tests.app.conftest import small_level
 
 SHIFT = pygame.KMOD_SHIFT
@@ -21,12 +22,17 @@ def with_arrows():
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("width", [300, 500, 640, 800, 1280])
-def test_buttons_that_do_not_fit_are_in_the_menu(width):
-    actions = [action for group in (*LEFT, RIGHT) for action, _ in group]
-    shown = fitting(actions, width)
-    assert set(shown) <= set(actions) and {"pause", "reset", "undo", "gallery"} <= set(shown)
-    assert (shown == actions) == (width >= 1280)
+def test_the_bar_has_nine_buttons_at_most_and_its_menu_all_other_actions(driver, open_app):
+    bar = driver.app.play.toolbar
+    assert len(bar.buttons) == 9 and {"pause", "reset", "undo", "gallery", "more"} <= set(bar.buttons)
+    of_groups = {action for group in (*LEFT, RIGHT) for action, _ in group}
+    assert of_groups == set(bar.buttons) | {"edit"}
+    assert set(bar.left_out) == set(MENU) - set(bar.buttons) - {"keep", "ghost", "card", "as_it_was"}
+    driver = open_app(edit=True)
+    driver.app.act("play")
+    driver.frames(2)
+    bar = driver.app.play.toolbar
+    assert "edit" in bar.buttons and "share" in bar.left_out and len(bar.buttons) == 9
 
 
 @pytest.mark.parametrize("size", [(640, 480), (800, 600), (1280, 720)])
@@ -37,7 +43,6 @@ def test_the_bar_lies_inside_the_window_nothing_over_another_and_all_can_be_reac
     rects = [button.rect for button in bar.buttons.values()]
     assert all(pygame.Rect((0, 0), size).contains(rect) for rect in rects)
     assert all(rect.collidelist(rects[:index]) < 0 for index, rect in enumerate(rects))
-    assert bool(bar.left_out) == (size[0] < 1280)
     assert driver.app.play.show_panel == (size[0] >= 800)
 
 
@@ -64,29 +69,33 @@ def test_a_name_has_a_line_or_two_smaller_ones_and_what_does_not_fit_is_its_tool
     driver = open_app(small_level(name=name))
     title = title_of(driver, name, 1600)
     assert title.lines == [name] and title.tip == ""
-    title = title_of(driver, name, 1280)
+    name = " ".join([name] * 4)
+    title = title_of(open_app(small_level(name=name)), name, 1000)
     assert len(title.lines) == 2 and " ".join(title.lines) == name and title.tip == ""
     long = ("A name of many words <& more> " * 6).strip()
     driver = open_app(small_level(name=long))
-    title = title_of(driver, long, 1280)
+    title = title_of(driver, long, 1000)
     assert title.lines[-1].endswith("…") and title.tip == long
     driver.move(title.rect.center)
     driver.pass_unseen(90)
     assert driver.app.ui.tip.text == long
     unbroken = "Llanfairpwllgwyngyllgogerychwyrndrobwll"
-    assert title_of(open_app(small_level(name=unbroken)), unbroken, 1280).tip == unbroken
+    assert title_of(open_app(small_level(name=unbroken * 3)), unbroken * 3, 1000).tip == unbroken * 3
 
 
-def test_what_has_no_room_is_done_from_the_menu(driver):
-    driver.app.display.window.size = (640, 480)
+def test_what_has_no_button_is_done_from_the_menu_which_says_what_is_on(driver):
+    bar = driver.app.play.toolbar
+    driver.app.act("timeline")
     driver.frames(2)
     bar = driver.app.play.toolbar
-    assert "settings" in bar.left_out
     driver.click_widget(bar.buttons["more"])
-    (settings,) = [button for button in driver.app.ui.buttons() if button.text.startswith("Settings")]
-    driver.app.ui.focus_on(settings)
-    driver.frames(2)
-    driver.click_widget(settings)
+    rows = driver.app.ui.focus.rows
+    assert [row.text for row in rows] == [label_of(action, "play") for action in bar.left_out]
+    said = {action: row.aside for action, row in zip(bar.left_out, rows, strict=True)}
+    assert said["timeline"] == "on" and said["graphs"] == "F8"
+    for _ in range(bar.left_out.index("settings") + 1):
+        driver.key(pygame.K_DOWN)
+    driver.key(pygame.K_RETURN)
     assert any(button.text == "Light" for button in driver.app.ui.buttons())
 
 

@@ -9,7 +9,7 @@ import pytest
 from sandbox.app.base.shortcuts import action_of, combination_of, shortcuts, use_keys, with_keys
 from sandbox.app.draw.colours import BACKGROUND, show_theme, shown_theme
 from sandbox.app.draw.renderer import FULL, NO_EFFECTS
-from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf, theme_of
+from sandbox.app.settings.chosen import SETTINGS, Address, Amount, Chosen, OneOf, theme_of
 from sandbox.app.settings.settings_sheet import KeyRow
 from sandbox.app.widgets.widget import Widget
 from sandbox.editor.storage.preferences import (
@@ -99,7 +99,7 @@ def test_every_setting_takes_its_values_and_no_others():
         if isinstance(setting, Amount):
             assert setting.fault_of(setting.high) is None and setting.fault_of(setting.high + 1) is not None
         else:
-            assert isinstance(setting, OneOf) and setting.fault_of("?") is not None
+            assert isinstance(setting, OneOf | Address) and setting.fault_of("?") is not None
     assert theme_of("light") == "light" and theme_of("dark") == "dark" and theme_of("system") in ("dark", "light")
 
 

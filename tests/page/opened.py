@@ -13,6 +13,11 @@ SETTLED = """(async () => {
 # From the start, while tests make the ticks: hands take it that time passes.
 TICKED = "page.toy.restart(); page.toy.pause(); page.toy.hands.isStill = () => false"
 # The same, without the words that go once somebody has played: the view then stands.
+# Has what hands may not do in sight, to be refused.
+ALL_SHOWN = """for (const name of page.toy.level.absent.splice(0)) {
+  for (const each of document.querySelectorAll(`#${name}, #panel .${name}`)) each.hidden = false;
+}
+page.panel.show()"""
 START_OVER = f"""(async () => {{
   if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
   await {SETTLED};

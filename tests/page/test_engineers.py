@@ -7,7 +7,7 @@ import pytest
 from sandbox.replay import read_replay, verify
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import START_OVER, opened, saved
+from tests.page.opened import ALL_SHOWN, START_OVER, opened, saved
 from tests.page.pointing import click, text
 
 SETTINGS = "page.toy.world.settings()"
@@ -21,6 +21,7 @@ def _opened(browser: Browser, folder: Path, name: str) -> Tab:
     """A page that stands, with what engineers want unfolded."""
     tab = opened(browser, folder, level_page(name), width=1400, height=900)
     tab.evaluate(START_OVER)
+    tab.evaluate(ALL_SHOWN)
     click(tab, "#tune")
     click(tab, ".engineers summary")
     return tab

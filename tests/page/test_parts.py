@@ -14,7 +14,7 @@ from sandbox.session.replay.link import replay_of
 from sandbox.tools.dropping import PARTS
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import SETTLED, START_OVER, opened, saved
+from tests.page.opened import ALL_SHOWN, SETTLED, START_OVER, opened, saved
 from tests.page.pointing import click, middle, tap, text
 from tests.support.wholes import some_and_whole
 
@@ -26,6 +26,7 @@ def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
     """A page that stands, with its parts."""
     tab = opened(browser, folder, level_page(name), **how)
     tab.evaluate(START_OVER)
+    tab.evaluate(ALL_SHOWN)
     press = tap if how.get("is_phone") else click
     press(tab, "#make")
     press(tab, "#parts")

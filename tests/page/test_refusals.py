@@ -7,7 +7,7 @@ import pytest
 
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import SETTLED, START_OVER, opened
+from tests.page.opened import ALL_SHOWN, SETTLED, START_OVER, opened
 from tests.page.pointing import click, drag, middle, place, text
 
 # Levels that keep hands from the world and from materials.
@@ -32,6 +32,7 @@ def tab(browser: Browser, tmp_path: Path, level: str) -> Iterator[Tab]:
     """A page of the level, which stands; nothing of it is changed by what is tried."""
     made = opened(browser, tmp_path, level_page(level), width=1400, height=900)
     made.evaluate(START_OVER)
+    made.evaluate(ALL_SHOWN)
     yield made
     assert made.evaluate(COMMANDS) == 0
     assert made.faults == []

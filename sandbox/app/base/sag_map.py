@@ -219,11 +219,16 @@ _SEEN = {
 }
 
 
+# What sags by a smaller share is said not to sag.
+NO_SAG = 1e-3
+
+
 class SagSentence(NamedTuple):
-    """Words for a sag: `sag` has {} where the number goes, `flat` is said where a number says nothing any more."""
+    """Words for a sag: `sag` has {} where the number goes; `flat` and `none` are said where a number says nothing."""
 
     sag: str
     flat: str
+    none: str
 
 
 def subject_words(name: str, support: Support) -> str:
@@ -242,4 +247,4 @@ def sag_sentence(name: str, support: Support) -> SagSentence:
     _, verb, of = _SEEN[support]
     subject = capitalised(subject_words(name, support))
     flat = "lies flat under its own weight" if support is Support.FLOOR else f"{verb} more than half its {of}"
-    return SagSentence(f"{subject} {verb} {{}} of its {of}", f"{subject} {flat}")
+    return SagSentence(f"{subject} {verb} {{}} of its {of}", f"{subject} {flat}", f"{subject} does not sag")

@@ -187,6 +187,8 @@ SHORTCUTS = (
     Shortcut("", ("Shift+drag",), "Choose the range on the timeline", "Time", "play"),
     Shortcut("reset", ("R",), "Back to the last checkpoint, or the beginning", "Time", "play"),
     Shortcut("restart", ("Shift+R",), "Back to the beginning", "Time", "play"),
+    Shortcut("as_it_was", ("Ctrl+Shift+R",), "Back to the beginning, as the level was", "Time", "play"),
+    Shortcut("card", ("Shift+E",), "How it ended: the card of a win or a loss", "View", "play"),
     Shortcut("ghost", ("Shift+G",), "Ghost of your best run, in levels with a goal", "View", "play"),
     Shortcut("", ("Wheel",), "Zoom about the pointer", "View"),
     Shortcut("", ("Middle drag", "Space+drag"), "Pan", "View"),
@@ -305,6 +307,16 @@ def tip_of(action: str, mode: Mode) -> str:
     """What an action does and its first keys, for tooltips."""
     entry = _entry_of(action, mode)
     return f"{entry.label}  [{entry.keys[0]}]" if entry.keys else entry.label
+
+
+def label_of(action: str, mode: Mode) -> str:
+    """What an action does."""
+    return _entry_of(action, mode).label
+
+
+def keys_of(action: str) -> str:
+    """The first keys of an action of play, "" where it has none."""
+    return "".join(_entry_of(action, "play").keys[:1])
 
 
 def _entry_of(action: str, mode: Mode) -> Shortcut:

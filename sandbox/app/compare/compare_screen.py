@@ -164,7 +164,7 @@ class CompareScreen(PlayScreen):
         assert isinstance(self.playback, TwinPlayback)
         return self.playback.reset(), self.other.reset()
 
-    def _begin_again(self) -> None:
+    def _begin_again(self, keeps_tuning: bool) -> None:
         assert self.beside is not None
         one, other = self._next_runs()
         one.pair(other)
@@ -174,9 +174,9 @@ class CompareScreen(PlayScreen):
         self.difference = Difference()
         self._app.show_replay_progress(other, self.can_cancel)
 
-    def restart(self) -> None:
+    def restart(self, as_it_was: bool = False) -> None:
         """Begin both runs again."""
-        super().restart()
+        super().restart(as_it_was)
         if self.panel is not None and self.side == SIDES[1]:
             self.panel.attach(self.other)
 

@@ -1,5 +1,6 @@
 """TwinPlayback: a run that passes on what is done to it to another one, but for the settings that the two differ in."""
 
+from collections.abc import Collection
 from typing import Self
 
 import numpy as np
@@ -64,16 +65,9 @@ class TwinPlayback(Playback):
         if twin is not None and place < len(twin.session.branches):
             Playback.return_to(twin, twin.session.branches[place])
 
-    def reset(self) -> Self:
+    def reset(self, kept: Collection[type[Command]] = OWN) -> Self:
         """Begin the same level again, with the settings that it has now, at the same speed."""
-        fresh = type(self)(self.level)
-        fresh.clock.paused, fresh.clock.speed = self.clock.paused, abs(self.clock.speed)
-        fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
-        for command in own_settings(self.session.world, fresh.session.world):
-            fresh.session.submit(command)
-        fresh.session.apply_pending()
-        fresh.current = fresh.previous = fresh.session.snapshot()
-        return fresh
+        return super().reset(kept)
 
 
 def coefficients_of(world: World, material: int | None) -> tuple[float, float] | None:
@@ -82,16 +76,3 @@ def coefficients_of(world: World, material: int | None) -> tuple[float, float] |
     chosen &= (world.law != LAW_HOOKE) & world.spring_active
     pairs = np.unique(np.stack([world.stiffness[chosen], world.damping[chosen]], axis=1), axis=0)
     return (float(pairs[0, 0]), float(pairs[0, 1])) if len(pairs) == 1 else None
-
-
-def own_settings(world: World, fresh: World) -> list[Command]:
-    """The commands that give a fresh world of the same level the settings and coefficients that a world has now."""
-    commands: list[Command] = []
-    now = world.settings
-    if now != fresh.settings:
-        commands.append(SetSolver(now.solver, now.iterations, now.substeps, now.warm_start))
-    for material in range(len(fresh.material_names)):
-        pairs = coefficients_of(world, material)
-        if pairs is not None and pairs != coefficients_of(fresh, material):
-            commands.append(SetCoefficients(*pairs, material))
-    return commands

@@ -84,14 +84,18 @@ class Camera:
         width, height = self.viewport[2] / ZOOM_RANGE[0], self.viewport[3] / ZOOM_RANGE[0]
         return right - left <= width and top - bottom <= height
 
-    def fit(self, box: Box) -> None:
-        """Show a box (left, bottom, right, top) [m] as large as it goes."""
+    def fit(self, box: Box, above: float = 0.5, margin: float = FIT_MARGIN) -> None:
+        """Show a box (left, bottom, right, top) [m] as large as it goes.
+
+        above: the part of the height to spare that is above the box; margin: the part of the view that stays free.
+        """
         left, bottom, right, top = box
         width, height = max(right - left, SMALLEST_EXTENT), max(top - bottom, SMALLEST_EXTENT)
-        free = 1.0 - 2.0 * FIT_MARGIN
+        free = 1.0 - 2.0 * margin
         zoom = min(self.viewport[2] * free / width, self.viewport[3] * free / height)
         self.zoom = min(max(zoom, ZOOM_RANGE[0]), ZOOM_RANGE[1])
-        self.centre = ((left + right) / 2, (bottom + top) / 2)
+        spare = max(self.viewport[3] * free / self.zoom - height, 0.0)
+        self.centre = ((left + right) / 2, (bottom + top) / 2 + (above - 0.5) * spare)
 
     def _extent(self) -> Point:
         """The largest box [m] that can be shown with a margin."""

@@ -12,7 +12,7 @@ from sandbox.app.draw.colours import shown_theme
 from sandbox.app.draw.picture import crop_of, draw_picture
 from sandbox.app.draw.picture_cache import LINE_SCALE, SIZE, find_picture, keep_for_later, kept_picture, picture_key
 from sandbox.app.gallery.card import Card
-from sandbox.editor.document import UNTITLED
+from sandbox.app.play.run_actions import level_name
 from sandbox.level.document.model import Level
 from sandbox.level.plan.surfaces import terrain_of
 from sandbox.physics.snapshot import Snapshot
@@ -20,10 +20,16 @@ from sandbox.session.replay.reader import read_in_slices
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.scene import SUFFIX, read_about, read_scene
 
-# What the place is called that New begins with.
-NEW_PLACE = "New place"
 # Bytes at the end of a scene's file, where the hash of its state is, which a picture goes by.
 END_BYTES = 256
+
+
+def level_of_scene(path: Path) -> str:
+    """What the level of a scene is called; "Runs" where its file cannot be read, which its card says."""
+    try:
+        return level_name(read_about(path).name)
+    except (ReplayError, OSError):
+        return "Runs"
 
 
 def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
@@ -37,7 +43,7 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
     except (ReplayError, OSError) as error:
         card.show_fault(error.faults[0] if isinstance(error, ReplayError) else str(error))
         return
-    when, level = when_text(about.when), about.name if about.name != UNTITLED else NEW_PLACE
+    when, level = when_text(about.when), level_name(about.name)
     name = level if is_kept else path.name.removesuffix(SUFFIX)
     card.line = f"{when}, {about.actions}" if is_kept else f"Scene, {when}"
     text = f"{level}, as it stood {when}: {about.actions}."

@@ -25,7 +25,7 @@ from sandbox.app.draw.picture_cache import (
     picture_key,
 )
 from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, Preview, draw_shadow
-from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene
+from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene, level_of_scene
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
 from sandbox.app.play.score import time_text
 from sandbox.app.widgets.button import Button
@@ -62,8 +62,10 @@ NO_LEVELS = (
 NO_REPLAYS = "No recordings yet. Record a run with Ctrl+R, or save what you did with Ctrl+Shift+S."
 # What stands in the file of a level that can be won.
 RULES = b'"rules"'
-SAVED, KEPT, GO_ON = "Saved", "Not saved, and kept", "Go on where you were"
-KEPT_LINE = "What you played, as it stood. The newest come first, and the oldest go some day."
+SAVED, GO_ON, RECENT, WIN = "Saved", "Go on where you were", "Recently played", "Win levels"
+KEPT_LINE = "Not saved, and kept as it stood; the oldest go some day."
+# Where the card of what can be won is among toys.
+WIN_PLACE = 1
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 
@@ -86,7 +88,10 @@ class Group:
 class Gallery:
     """The page of levels or recordings."""
 
-    def __init__(self, ui: Ui, app: Application, section: str, close: Callable[[], None], query: str = "") -> None:
+    def __init__(
+        self, ui: Ui, app: Application, section: str, close: Callable[[], None], query: str = "",
+        place: tuple[str, float] = ("", 0.0),
+    ) -> None:  # fmt: skip
         self._ui, self._app, self._close = ui, app, close
         self.groups: list[Group] = []
         self.section = section
@@ -104,14 +109,22 @@ class Gallery:
         self.header = Header(ui, app, section, self.sheet, query)
         self.header.search.enter = self._open_first
         top = self.header.height
-        place = ui.rect(MARGIN - 6, top, ui.units[0] - 2 * MARGIN + 22, ui.units[1] - top)
-        self.area = ScrollArea(ui, place, self.sheet)
+        around = ui.rect(MARGIN - 6, top, ui.units[0] - 2 * MARGIN + 22, ui.units[1] - top)
+        self.area = ScrollArea(ui, around, self.sheet)
         self._nothing = TextBlock(ui, ui.rect(6, 12, self._width, 60), "", self.area.content, 13.0)
         self._build_groups_of[section]()
         titles = [group.title for group in self.groups if group.cards and not group.is_shortcut]
         if section == "levels":
             self.header.show_sections(titles, self._show_section)
         self._arrange()
+        self.area.scroll_to(sum(group.top for group in self.groups if group.title == place[0]) + ui.px(place[1]))
+
+    @property
+    def place(self) -> tuple[str, float]:
+        """Where it is scrolled to: the heading that was reached last, and how far below that [layout units]."""
+        reached = [group for group in self.groups if group.top <= self.area.offset and not self.query]
+        group = reached[-1] if reached else self.groups[0]
+        return (group.title, (self.area.offset - group.top) / self._ui.scale) if reached else ("", 0.0)
 
     @property
     def cards(self) -> list[Card]:
@@ -147,16 +160,18 @@ class Gallery:
         return group
 
     def _add_shipped(self) -> None:
-        if self._app.mode == "play":
-            self._add_kept(self._group(GO_ON, is_shortcut=True))
-        played = played_levels()
-        shortcuts = self._group("Recently played", is_shortcut=True)
-        for path in played[: shortcuts.columns]:
+        is_play = self._app.mode == "play"
+        shortcuts = self._group(GO_ON if is_play else RECENT, is_shortcut=True)
+        for path in self._app.scenes.shelf.others()[:1] if is_play else []:
+            self._add_scene(shortcuts, path, is_kept=True)
+        for path in played_levels()[: shortcuts.columns - len(shortcuts.cards)]:
             self._add_level(shortcuts, path)
         for place, (section, paths) in enumerate(in_sections(shipped_levels())):
-            if place == 1 and self._app.mode == "play":
+            if place == 2 and is_play:
                 self._add_lessons()
             group = self._group(section.title, section.line)
+            if place == 1 and is_play:
+                self._add_way_to(group, paths[0])
             for path in paths:
                 self._add_level(group, path, section.levels.get(path.stem, ""))
                 if path.stem == FIRST and not played_levels():
@@ -164,6 +179,16 @@ class Gallery:
         own = self._group("Your own")
         for path in recent_levels():
             self._add_level(own, path)
+
+    def _add_way_to(self, group: Group, first: Path) -> None:
+        """Add a card to the first group that leads to another one; first: the level whose picture it has."""
+        text = "Levels that can be won, each with up to three stars."
+        card = self._add_card(self.groups[1], WIN, text, partial(self._show_section, group.title))
+        self.groups[1].cards.insert(WIN_PLACE, self.groups[1].cards.pop())
+        card.line, card.tags = group.line, ("goal", "puzzle", "win")
+        picture = find_picture(first, picture_key(first.read_bytes()), card.picture_size, shown_theme())
+        if picture is not None:
+            card.show_picture(picture)
 
     def _add_lessons(self) -> None:
         group = self._group("Lessons", "Try it, and see why.")
@@ -202,13 +227,13 @@ class Gallery:
                 self._add_level(group, path)
             else:
                 self._add_scene(group, path, is_kept=False)
-        self._add_kept(self._group(KEPT, KEPT_LINE))
-
-    def _add_kept(self, group: Group) -> None:
-        """Add the runs that were kept by themselves, but the one on the screen: in a row as many as fit."""
-        kept = self._app.scenes.shelf.others()
-        for path in kept[: group.columns if group.is_shortcut else None]:
-            self._add_scene(group, path, is_kept=True)
+        kept: dict[str, list[Path]] = {}
+        for path in self._app.scenes.shelf.others():
+            kept.setdefault(level_of_scene(path), []).append(path)
+        for name, paths in kept.items():
+            group = self._group(name, f"{len(paths)} {'run' if len(paths) == 1 else 'runs'}. {KEPT_LINE}")
+            for path in paths:
+                self._add_scene(group, path, is_kept=True)
 
     def _add_scene(self, group: Group, path: Path, is_kept: bool) -> None:
         name = one_line(path.name.removesuffix(SUFFIX))

@@ -25,7 +25,6 @@ SECTIONS = (
         "hourglass": "Turn gravity over",
         "suspension_car": "D drives, A drives back",
         "catapult": "Hold D and let fly",
-        "curtain": "Tug a corner, unpin a hook",
     }),
     GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
         "chain_of_events": "One push, and all follows",
@@ -43,6 +42,7 @@ SECTIONS = (
         "pinball_score": "A and D flip",
     }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
+        "curtain": "Tug a corner, unpin a hook",
         "jelly_cube": "Lower Cs, and it softens",
         "trampoline": "Pull the bed down and let go",
         "desk_toy": "Two jellies and a marble in a box",

@@ -49,13 +49,17 @@ class PadState(NamedTuple):
 
 
 class CoefficientPad(Draggable):
-    """The pad; changed(Cs, Cd) is called as it is dragged, done() at the end of each drag or key press."""
+    """The pad; changed(Cs, Cd) is called as it is dragged, done() at the end of each drag or key press.
+
+    is_plain: it shows how far a body sags, and nothing of how that swings.
+    """
 
     def __init__(
         self, ui: Ui, rect: pygame.Rect, changed: Callable[[float, float], None], done: Callable[[], None],
-        container: Any = None,
+        container: Any = None, is_plain: bool = False,
     ) -> None:  # fmt: skip
         super().__init__(ui, rect, container)
+        self._is_plain = is_plain
         self.state = PadState(0.1, 0.1, False, True)
         self.zones: CoefficientZones | None = None
         self._changed, self._done, self._name = changed, done, ""
@@ -338,14 +342,17 @@ class CoefficientPad(Draggable):
         """Paint how far the body sags, as lines with words between them, and where its wobble begins to swing."""
         body = self.state.body
         pixels = pygame.Surface(inside.size, pygame.SRCALPHA)
+        if body is not None and body.tells_sag:
+            self._paint_sags(pixels, SagMap.of(body, self.state.scale))
+        if self._is_plain:
+            surface.blit(pixels, inside)
+            return
         stiffness, damping = self._grid(inside)
         if body is None:
             swings: Mask = swings_back(stiffness, damping)
         else:
             pair = body.of_substep(stiffness.reshape(-1), damping.reshape(-1))
             swings = swings_back(*body.whole(*pair)).reshape(stiffness.shape)
-            if body.tells_sag:
-                self._paint_sags(pixels, SagMap.of(body, self.state.scale))
         x, y = np.nonzero(_border(swings))
         dashed = (x + y) // max(2, self.ui.px(4)) % 2 == 0
         alpha = pygame.surfarray.pixels_alpha(pixels)

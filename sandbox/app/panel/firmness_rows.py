@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 
 from sandbox.app.base.sentences import capitalised
-from sandbox.app.panel.readings import per_cent
+from sandbox.app.panel.readings import per_cent, seen
 from sandbox.app.panel.softness_reading import ALL_BODIES, SoftnessReading
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.button import Choice
@@ -43,11 +43,13 @@ class FirmnessRows(SoftnessReading):
     text: TextBlock
     sag: Field
 
-    def __init__(self, playback: Playback, say: Callable[[str], None]) -> None:
+    def __init__(self, playback: Playback, say: Callable[[str], None], is_plain: bool = False) -> None:
         super().__init__(playback)
-        self._say = say
+        self._say, self.tells_motion = say, not is_plain
+        hands = playback.level.hands
+        self.may = hands is None or hands.allows("firmness")
         # A panel that was laid out without bodies has no rows.
-        self.shown = bool(self._subjects)
+        self.shown = self.may and bool(self._subjects)
         # Sags that were asked for and are looked for, by the name of the body, and the gesture that asked.
         self._asked: dict[str, tuple[float, int]] = {}
         # Those of them that have about that by now.
@@ -57,7 +59,19 @@ class FirmnessRows(SoftnessReading):
         """Offer the present bodies in the menu: bodies join a run, and go again."""
         self._find_bodies()
         if self.shown:
-            self.menu.offer([ALL_BODIES, *self.bodies], self.body)
+            self.menu.offer(self.offered, self.body)
+
+    @property
+    def offered(self) -> list[str]:
+        """The names that the menu offers: one body that hands may touch alone stands for all."""
+        return self.bodies if self.bodies == [self.body] else [ALL_BODIES, *self.bodies]
+
+    def _find_bodies(self) -> None:
+        super()._find_bodies()
+        hands = self.playback.level.hands
+        if hands is not None and hands.bodies is not None:
+            self._subjects = {name: each for name, each in self._subjects.items() if hands.lets_touch(name)}
+            self.body = next(iter(self._subjects)) if len(self._subjects) == 1 else ALL_BODIES
 
     def speak_of(self, material: int | None) -> None:
         """Choose the one body of several that is of a material, as the level's text speaks of it, if there is one."""
@@ -78,7 +92,7 @@ class FirmnessRows(SoftnessReading):
             self._settle(HASTE)
         said = self.read(HASTE if self._is_waited_for() else WORK, look)
         if said is not None:
-            self.sag.show(said.sag)
+            self.sag.show(said.sag if self.tells_motion else seen(said.sag))
             self.words.show(said.word)
             self.text.show_text(said.text)
 

@@ -31,6 +31,7 @@ from sandbox.editor.document import EditError
 from sandbox.editor.panel.field_info import SAG
 from sandbox.editor.panel.material_properties import COEFFICIENTS
 from sandbox.editor.panel.property import MIXED, Property, Section, in_range
+from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import significant
 from sandbox.physics.analysis.stability import (
     CoefficientLimits,
@@ -59,6 +60,12 @@ ALL_MATERIALS = "All springs"
 MORE, MORE_TITLE = "more", "More"
 
 NO_SPRING = "there is no spring here that Cs and Cd apply to"
+NOTHING_LEFT = "Nothing of it is left here: its springs are cut, broken or gone. R begins again."
+
+
+def has_use(level: Level) -> bool:
+    """Whether hands may do anything in a level that the panel is for."""
+    return level.hands is None or any(map(level.hands.allows, ("firmness", "material", "air", "solver")))
 
 
 @dataclass
@@ -102,7 +109,11 @@ class Panel(PropertyOwner):
         self._limit_labels: dict[str, TextBlock] = {}
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
-        self.firmness = FirmnessRows(playback, say)
+        hands = playback.level.hands
+        self._open = dict.fromkeys(SECTIONS, True) | {MORE: False} | shape.open
+        # What is for engineers alone is shown where MORE is open, which levels with hands do without.
+        self._is_plain = (hands is not None or not self._open[MORE]) and shape.sweeps.measure is None
+        self.firmness = FirmnessRows(playback, say, self._is_plain)
         if playback.level.look is not None and playback.level.look.material is not None:
             self.firmness.speak_of(self.material)
         self.engineers = EngineersRows(playback, self, choose["rate"], self.firmness, self._both)
@@ -116,7 +127,6 @@ class Panel(PropertyOwner):
         self.by_pad = shape.springs == "pad"
         # Without a choice of the person's the pad is taken where this height has room for it.
         self._height = height if shape.springs is None else 0.0
-        self._open = dict.fromkeys(SECTIONS, True) | {MORE: False} | shape.open
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
@@ -127,10 +137,17 @@ class Panel(PropertyOwner):
             self._build_firmness()
         self.play.build(rows)
         self.sections = {name: section.make(self) for name, section in SECTIONS.items()}
-        asked = [name for name, section in SECTIONS.items() if section.is_asked_for(playback.level.description)]
+        if hands is None:
+            asked = [name for name, each in SECTIONS.items() if each.is_asked_for(playback.level.description)]
+        else:
+            asked = ["springs"] if hands.allows("material") else []
         self._build_sections(asked)
         others = [name for name in SECTIONS if name not in asked]
-        rows.section(MORE_TITLE, self._open[MORE], partial(choose["fold"], MORE), lambda: self._build_sections(others))
+        if hands is None:
+            more = partial(choose["fold"], MORE)
+            rows.section(MORE_TITLE, self._open[MORE], more, lambda: self._build_sections(others))
+        else:
+            rows.unseen(lambda: self._build_sections(others))
         self.area.set_height(ui.px(rows.y))
         self.refresh()
 
@@ -161,9 +178,8 @@ class Panel(PropertyOwner):
     def _build_firmness(self) -> None:
         ui, rows, firmness = self.ui, self.rows, self.firmness
         ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "heading")
-        names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
-        firmness.menu = WordPicker(ui, place, names, firmness.body, self.choose_body, rows.back)
+        firmness.menu = WordPicker(ui, place, firmness.offered, firmness.body, self.choose_body, rows.back)
         words = [(word, word.capitalize(), _word_tip(sag)) for word, sag in WORDS.items()]
         firmness.words = ui.choice(rows.row(ROW + 4, 6), words, firmness.choose_word, rows.back)
         width = ENTRY_WIDTH - 20
@@ -184,14 +200,15 @@ class Panel(PropertyOwner):
         self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
         chosen = ALL_MATERIALS if self.material is None else self._material_names()[self.material]
-        width = INSIDE / 2 - 4 if self.by_pad else INSIDE
+        width = INSIDE if self._is_plain or not self.by_pad else INSIDE / 2 - 4
         if self.by_pad:
             place = rows.place(MARGIN + INSIDE - width, 0, width, 30)
         self.menu = WordPicker(ui, rows.row(30, 6, width=width), names, chosen, self._choose_material, rows.back)
         if self.by_pad:
-            self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
+            if not self._is_plain:
+                self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
             place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
-            self.pad = CoefficientPad(ui, place, self._move, self.end_merge, rows.back)
+            self.pad = CoefficientPad(ui, place, self._move, self.end_merge, rows.back, self._is_plain)
         for row, name in enumerate(() if self.by_pad else COEFFICIENTS):
             self._limit_labels[name] = TextBlock(ui, rows.aside(row), "", rows.back, 11.0, WARNING)
         self.form = rows.form(self, [self._coefficients()], self._slider_state)
@@ -274,7 +291,7 @@ class Panel(PropertyOwner):
             self.note.show_text(self._no_spring_note())
             return
         self.engineers.show_spring((stiffness, damping))
-        self.note.show_text(stability_words(world.settings.solver, limits, stiffness, damping))
+        self.note.show_text(stability_words(world.settings.solver, limits, stiffness, damping, self._is_plain))
 
     def _slider_state(self, each: Property) -> SliderState:
         """The middle of the chosen springs' values, what is proven of them, and what the level gives them."""
@@ -304,7 +321,7 @@ class Panel(PropertyOwner):
 
     def _find_zones(self) -> None:
         """Find the pad's zones again, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
-        if not self.by_pad:
+        if not self.by_pad or self._is_plain:
             return
         world = self.playback.session.world
         others = world.material != self.material if self.material is not None else world.material < 0
@@ -330,7 +347,7 @@ class Panel(PropertyOwner):
         world = self.playback.session.world
         hooke = (world.law == LAW_HOOKE) & ((world.material == self.material) | (self.material is None))
         if not hooke.any():
-            return "There are no springs." if self.material is None else "No spring is of this material."
+            return NOTHING_LEFT if (world.material >= 0).any() else "There are no springs."
         first = int(np.flatnonzero(hooke)[0])
         k, c = world.hooke_stiffness[first], world.hooke_damping[first]
         return f"Classic Hooke springs, k = {k:g} N/m, c = {c:g} N s/m: Cs and Cd do not apply."
@@ -390,7 +407,7 @@ class Panel(PropertyOwner):
     @property
     def lacks_rows(self) -> bool:
         """Whether a body has joined a run that had none, so that it is to be laid out anew."""
-        return not self.firmness.shown and bool(self.firmness.bodies)
+        return self.firmness.may and not self.firmness.shown and bool(self.firmness.bodies)
 
     def _present(self) -> tuple[object, object]:
         world = self.playback.session.world
@@ -412,7 +429,8 @@ class Panel(PropertyOwner):
         self.material = material
         if self.firmness.body != ALL_BODIES and material != self.firmness.material_of(self.firmness.body):
             self.firmness.choose_body(ALL_BODIES)
-            self.firmness.menu.show_chosen(ALL_BODIES)
+            if self.firmness.shown:
+                self.firmness.menu.show_chosen(ALL_BODIES)
         self.menu.show_chosen(ALL_MATERIALS if material is None else self._material_names()[material])
 
     def _take_home(self) -> None:

@@ -72,12 +72,18 @@ class PanelRows:
         """Add a heading, and what `build` makes under it, which is seen where the section is open."""
         width = self.ui.font(HEADING_SIZE, True).size(title.upper())[0] / self.ui.scale + HEADING_ROOM
         FoldHeading(self.ui, self.row(18, 8, width=width), title, not is_open, toggle, self.back)
+        if is_open:
+            build()
+        else:
+            self.unseen(build)
+
+    def unseen(self, build: Callable[[], None]) -> None:
+        """Let `build` make rows that are not seen, and take no room."""
         before, y = len(self.back.children), self.y
         build()
-        if not is_open:
-            for element in self.back.children[before:]:
-                element.visible = False
-            self.y = y
+        for element in self.back.children[before:]:
+            element.visible = False
+        self.y = y
 
 
 class PanelForm(PropertyWidgets):

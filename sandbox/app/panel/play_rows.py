@@ -23,15 +23,26 @@ WIND_TIP = "Wind: drag the arrow to where it blows. In the middle the air is as 
 
 
 class PlayRows:
-    """What the rows show and do; melt: what melts springs or makes them whole, take_home: what shows their numbers."""
+    """What the rows show and do, as far as hands may; melt: what melts springs or makes them whole.
+
+    take_home: what shows the springs' numbers.
+    """
 
     def __init__(self, playback: Playback, melt: Callable[[], None], take_home: Callable[[], None]) -> None:
         self.playback, self._melt, self._take_home = playback, melt, take_home
         self._gesture: int | None = None
+        hands = playback.level.hands
+        self._has_air, self._has_springs = (hands is None or hands.allows(deed) for deed in ("air", "solver"))
 
     def build(self, rows: PanelRows) -> None:
         """Make the widgets."""
-        ui, back, half = rows.ui, rows.back, (INSIDE - GAP) / 2
+        if self._has_air:
+            self._build_air(rows)
+        if self._has_springs:
+            self._build_springs(rows)
+
+    def _build_air(self, rows: PanelRows) -> None:
+        half = (INSIDE - GAP) / 2
         own = self.playback.level.settings
         pulls, blows = (0.0, EARTH, math.hypot(*own.gravity)), (0.0, math.hypot(*own.wind))
         self.gravity, self._gravity_words = self._dial(
@@ -41,6 +52,9 @@ class PlayRows:
             rows, MARGIN + half + GAP, "Wind", MOST_WIND, blows, self._blow, WIND_TIP
         )
         rows.row(HEIGHT, 8)
+
+    def _build_springs(self, rows: PanelRows) -> None:
+        ui, back, half = rows.ui, rows.back, (INSIDE - GAP) / 2
         self.melt = ui.button(rows.place(MARGIN, 0, half, ROW), "Melt", self._melt, back, tip=tip_of("melt", "play"))
         tip = "What these springs are in your own loop or engine: numbers and code to copy"
         place = rows.row(ROW, 10, MARGIN + half + GAP, half)
@@ -61,10 +75,13 @@ class PlayRows:
         """Show the world's present values."""
         world = self.playback.session.world
         settings = world.settings
-        has_springs = bool((world.spring_active & (world.material >= 0)).any())
-        for button in (self.melt, self.take_home):
-            button.is_enabled = has_springs
-        self.melt.show_text("Make whole" if settings.solver == "single_pass" else "Melt")
+        if self._has_springs:
+            has_springs = bool((world.spring_active & (world.material >= 0)).any())
+            for button in (self.melt, self.take_home):
+                button.is_enabled = has_springs
+            self.melt.show_text("Make whole" if settings.solver == "single_pass" else "Melt")
+        if not self._has_air:
+            return
         for dial, block, value, unit in (
             (self.gravity, self._gravity_words, settings.gravity, "m/s\u00b2"),
             (self.wind, self._wind_words, settings.wind, "m/s"),

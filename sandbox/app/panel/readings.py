@@ -5,7 +5,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from sandbox.app.base.sag_map import sag_sentence, size_word
+from sandbox.app.base.sag_map import NO_SAG, sag_sentence, size_word
 from sandbox.physics.analysis.stability import CoefficientLimits
 from sandbox.physics.arrays import Floats
 from sandbox.physics.softness.body_motion import FLAT, SpringMotion
@@ -59,6 +59,14 @@ def per_cent(fraction: float, digits: int = 2) -> str:
     return f"{number(100.0 * fraction, digits)} %" if abs(fraction) >= UNSEEN else "0 %"
 
 
+def seen(sag: str) -> str:
+    """A sag [%] as a text for who need not know how little it is."""
+    try:
+        return f"< {100.0 * NO_SAG:g}" if 0.0 < float(sag) < 100.0 * NO_SAG else sag
+    except ValueError:
+        return sag
+
+
 def motion_words(motion: SpringMotion) -> str:
     """In words how an error decays, and when it is gone."""
     if motion.swings:
@@ -76,18 +84,27 @@ def sag_words(least: float, most: float, name: str | None, supports: Collection[
     if name is not None:
         (support,) = supports
         said = sag_sentence(name, support)
-        return said.flat if most >= FLAT else said.sag.format(per_cent(most))
+        return said.flat if most >= FLAT else said.none if most < NO_SAG else said.sag.format(per_cent(most))
     if least >= FLAT and set(supports) == {Support.FLOOR}:
         return "They lie flat under their own weight"
     sizes = {size_word(support) for support in supports}
     of = f"{sizes.pop()}s" if len(sizes) == 1 else "size"
+    if most < NO_SAG:
+        return "They do not sag"
     if per_cent(least) == per_cent(most):
         return f"They sag by {per_cent(most)} of their {of}"
+    if least < NO_SAG:
+        return f"They sag by at most {'more than half' if most > FLAT else per_cent(most)} of their {of}"
     return f"They sag by {per_cent(least)} to {'more than half' if most > FLAT else per_cent(most)} of their {of}"
 
 
-def stability_words(solver: str, limits: CoefficientLimits, stiffness: Floats, damping: Floats) -> str:
-    """Whether springs of these Cs and Cd (k,) may explode in a solver, in a sentence."""
+def stability_words(
+    solver: str, limits: CoefficientLimits, stiffness: Floats, damping: Floats, is_plain: bool = False
+) -> str:
+    """Whether springs of these Cs and Cd (k,) may explode in a solver, in a sentence; is_plain: "" unless they may."""
+    is_known = limits.stiffness is not None and limits.damping is not None
+    if is_plain and (SOLVERS[solver].bounded or not is_known):
+        return ""
     if SOLVERS[solver].bounded:
         if np.any(stiffness > damping):
             return "Cs is above Cd: it may bounce up to four times as high, but never explodes."
@@ -98,4 +115,4 @@ def stability_words(solver: str, limits: CoefficientLimits, stiffness: Floats, d
         if np.any(values >= limit) and limit < 1.0:
             both = f"Cs = Cd = {number(limits.both, 2)}" if limits.both else "nothing"
             return f"May explode: too stiff for a single pass (limit {both} here)."
-    return "Stable: proven for a single pass."
+    return "" if is_plain else "Stable: proven for a single pass."

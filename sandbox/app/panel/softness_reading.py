@@ -60,6 +60,8 @@ class SoftnessReading:
     def __init__(self, playback: Playback) -> None:
         self.playback = playback
         self.body = ALL_BODIES
+        # Whether it says how bodies swing, too.
+        self.tells_motion = True
         # Frequency [Hz] and damping ratio of the chosen bodies' slowest wobble.
         self.swing: Swing = (None, None)
         self._read_of: tuple[object, ...] = ()
@@ -195,7 +197,8 @@ class SoftnessReading:
         supports = {self._meters.of(world, reading.subject).body.support for reading in readings}
         name = readings[0].subject.name if len(readings) == 1 else None
         sag = sag_words(min(sags), max(sags), name, supports)
-        motions = {motion_words(reading.motion) for reading in readings if reading.motion is not None}
+        found = (reading.motion for reading in readings if reading.motion is not None)
+        motions = {motion_words(motion) for motion in found} if self.tells_motion else set()
         return f"{sag}; {motions.pop()}." if whole and len(motions) == 1 else f"{sag}."
 
     def _meter(self, subject: MeasuredBody) -> SagMeter | None:

@@ -14,31 +14,34 @@ from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import Theme
 from sandbox.app.draw.overlays import ZONES, name_place
-from sandbox.app.play.score import CHIP, TOP, Ending, ResultCard, ScoreView, chips_of, star_times
+from sandbox.app.play.result_card import Ending, ResultCard, star_times
+from sandbox.app.play.score import CHIP, TOP, ScoreView, chips_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.run.playback import Playback
 from sandbox.app.sound.waves import STAR_RISE, STAR_STEP
 from sandbox.app.widgets.dialogs import Choice
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.best_runs import Result, best_recording, best_result
-from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.document.model import ZoneDef
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import CommandError
-from sandbox.session.outcome import Outcome, last_checkpoint, outcome
+from sandbox.session.outcome import Outcome, last_checkpoint, outcome, star_words
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
+from sandbox.session.tuning import tuning_of
 
 # How long the goal is shown at the start [s], and in how much of that it fades.
 GOAL_SECONDS, FADING = 6.0, 0.5
 # A restart so soon after one from a checkpoint [s] goes to the beginning.
 TWICE = 1.5
-# Under what it is remembered whether the ghost is wanted.
-GHOST = "ghost"
+# Of a card that comes back all is there from the first [s].
+LONG_AGO = 1e9
 CHECKPOINT = "Checkpoint. {} comes back to here."
 BACK_AT_CHECKPOINT = "Back at the checkpoint. {} once more goes to the beginning."
 NO_ZONES = "This level has no zones."
+NOT_ENDED = "This run has not ended yet."
 NO_GHOST = "There is no best run yet: win this level first, then its ghost can run along."
 
 
@@ -52,8 +55,8 @@ class Played(Protocol):
         """Show a line about the run."""
         ...
 
-    def restart(self) -> None:
-        """Begin the run again from its beginning."""
+    def restart(self, as_it_was: bool = False) -> None:
+        """Begin the run again from its beginning; as_it_was: without what was tuned."""
         ...
 
 
@@ -64,7 +67,7 @@ class Game:
         self._app, self._screen, self._stage = app, screen, stage
         level = stage().playback.level
         self._has_rules = bool(level.rules)
-        self._is_on = is_on
+        self.is_on = is_on
         self.score = ScoreView()
         self.card: ResultCard | None = None
         self._ending: Ending | None = None
@@ -74,10 +77,11 @@ class Game:
         self._goal_fades = self._is_recording = False
         self._went_back: tuple[Playback, int] | None = None
         self._ghost: GhostRun | None = None
-        self.has_ghost = False
+        self.has_ghost = self._wants_ghost = False
         self.begin()
         self.actions: dict[str, Callable[[], object]] = {
-            "restart": screen.restart, "ghost": self._toggle_ghost, ZONES: self._toggle_zones
+            "restart": screen.restart, "as_it_was": lambda: screen.restart(as_it_was=True), "card": self.show_card,
+            "ghost": self._toggle_ghost, ZONES: self._toggle_zones,
         }  # fmt: skip
 
     @property
@@ -90,23 +94,22 @@ class Game:
         if self._ended_at is not None:
             # It was its end that let the run before pause.
             self._playback.clock.paused, self._ended_at = False, None
-        self._playback.pauses_at_end = self._is_on
+        self._playback.pauses_at_end = self.is_on
         self._goal_left = GOAL_SECONDS
-        self._went_back = None
-        self._ghost = None
+        self._went_back = self._ending = self._ghost = None
         self._stage().earlier = None
         self._find_ghost()
 
     def _find_ghost(self) -> None:
         """Look for the best run of the level, and let its ghost go along where it is wanted."""
         self.has_ghost = self._keeps_best and best_recording(self._playback.level) is not None
-        if self.has_ghost and preference(GHOST) is True:
+        if self.has_ghost and self._wants_ghost:
             self._load_ghost()
 
     @property
     def _keeps_best(self) -> bool:
         """Whether the best run of the level is kept: not of what is being edited, which is another one every time."""
-        return self._is_on and self._has_rules and not self._screen.of_document
+        return self.is_on and self._has_rules and not self._screen.of_document
 
     @property
     def shows_ghost(self) -> bool:
@@ -133,7 +136,7 @@ class Game:
     def go_back(self) -> bool:
         """Go back to the last checkpoint of the run, if there is one to go back to; whether there is."""
         playback = self._playback
-        if not self._is_on or playback.watching or playback.session.recording is not None:
+        if not self.is_on or playback.watching or playback.session.recording is not None:
             return False
         playback.apply_pending()
         tick = last_checkpoint(playback.level, playback.session.world)
@@ -162,8 +165,26 @@ class Game:
         if self.card is None:
             return False
         self.card.remove()
-        self.card = self._ending = None
+        self.card = None
         return True
+
+    def show_card(self) -> None:
+        """Show the card of a run that has ended once more, and let it stand still meanwhile."""
+        result = self.result if self.is_on else None
+        if result is None:
+            self._screen.say(NOT_ENDED)
+        elif self.card is None:
+            if self._ending is None or self._ending.outcome != result:
+                self._ending = self._ending_of(result)
+            self._playback.clock.paused, self._since = True, LONG_AGO
+            self._open_card(self._ending)
+
+    def open_at(self, pixel: Pixel) -> bool:
+        """Show the card where a pixel is on the chip that tells how the run ended; whether it is."""
+        is_there = self.score.end.collidepoint(pixel)
+        if is_there:
+            self.show_card()
+        return is_there
 
     def keep_watching(self) -> bool:
         """Close the card and let the run go on; whether there was a card."""
@@ -181,34 +202,58 @@ class Game:
 
     def _open_card(self, ending: Ending) -> None:
         self._ending = ending
-        self.card = ResultCard(self._ui, ending, self._choices(ending), self._area, self._since)
+        current, camera = self._playback.current, self._stage().camera
+        things = camera.project(current.position[shown_particles(current)])
+        self.card = ResultCard(self._ui, ending, self._choices(ending), self._area, self._since, things)
 
     def _choices(self, ending: Ending) -> list[Choice]:
         """The buttons of a card: at first what most people want next."""
-        again: list[Choice] = [("Again", self._screen.restart)]
-        if not ending.outcome.is_won and last_checkpoint(self._playback.level, self._playback.current) is not None:
-            again = [("Checkpoint", self.go_back), ("Beginning", self._screen.restart)]
+        screen, session, is_won = self._screen, self._playback.session, ending.outcome.is_won
+        choices: list[Choice] = [("Again", screen.restart)]
+        if not is_won and last_checkpoint(self._playback.level, self._playback.current) is not None:
+            choices = [("Checkpoint", self.go_back), ("Beginning", screen.restart)]
         following = None
-        if ending.outcome.is_won and not self._screen.of_document:
-            following = self._app.files.next_level(self._playback.level, self._screen.source)
-        ahead: list[Choice] = []
+        if is_won and not screen.of_document:
+            following = self._app.files.next_level(self._playback.level, screen.source)
         if following is not None:
             path, is_shipped = following
-            ahead = [("Next level", lambda: self._app.files.open_level(path, is_shipped))]
-        return [*ahead, *again, ("Keep watching", self.keep_watching)]
+            choices.insert(0, ("Next level", lambda: self._app.files.open_level(path, is_shipped)))
+        if tuning_of(session):
+            choices.append(("As it was", self.actions["as_it_was"]))
+        if is_won and not screen.of_document:
+            choices.append(("Send this", self._app.link_copying.begin))
+        if self.has_ghost or self._is_recording:
+            choices.append(("Race your best", self._race))
+        return [*choices, ("Keep watching", self.keep_watching)]
+
+    def _race(self) -> None:
+        """Begin again, with the ghost of the best run."""
+        self._wants_ghost = True
+        self._screen.restart()
+
+    def _ending_of(self, result: Outcome, before: Result | None = None, is_best: bool = False) -> Ending:
+        """The card's text; before: the best result until then, which else is the one that is kept."""
+        level = self._playback.level
+        best = best_result(level) if before is None and not is_best and self._keeps_best else before
+        shown = [each for each in chips_of(level, self._playback.current, None) if each.name]
+        score = tuple(f"{each.name} {each.value}" for each in shown)
+        words = star_words(level, result.rule)
+        return Ending(
+            result, level.settings.tick_rate, None if best is None else best.seconds, is_best, score,
+            "".join(words[result.stars - 1 : result.stars]) if result.is_won else "",
+        )  # fmt: skip
 
     def _end(self, result: Outcome) -> None:
         """Announce how the run ended, and keep it if it is the best one."""
-        playback, rate = self._playback, self._playback.level.settings.tick_rate
-        before, is_best = None, False
+        playback, before, is_best = self._playback, None, False
         if result.is_won and self._keeps_best:
-            before = best_result(playback.level)
+            before, rate = best_result(playback.level), playback.level.settings.tick_rate
             try:
                 is_best = self._is_recording = self._app.best.note(playback, Result(result.stars, result.tick, rate))
             except OSError as error:
                 self._screen.say(f"The best result cannot be kept: {error.strerror or error}.")
         self._since, self._ended_at = 0.0, result.tick
-        self._open_card(Ending(result, rate, None if before is None else before.seconds, is_best))
+        self._open_card(self._ending_of(result, before, is_best))
         self._app.sounds.signal("won" if result.is_won else "lost")
         for number, after in enumerate(star_times(result.stars)):
             self._app.sounds.signal("star", STAR_STEP + STAR_RISE * number, after)
@@ -222,12 +267,10 @@ class Game:
     # The ghost.
 
     def _toggle_ghost(self) -> None:
-        if self._ghost is not None:
-            self._ghost = None
-            self._stage().earlier = None
-            set_preference(GHOST, None)
+        self._wants_ghost = self._ghost is None
+        if not self._wants_ghost:
+            self._ghost = self._stage().earlier = None
             return
-        set_preference(GHOST, True)
         self._find_ghost()
         if not self.has_ghost:
             self._screen.say(NO_GHOST)
@@ -275,7 +318,7 @@ class Game:
             if action.checkpoint and not playback.watching:
                 self._screen.say(CHECKPOINT.format(_restart_key()))
         result = self.result if ended else None
-        if result is not None and self._is_on and not playback.watching:
+        if result is not None and self.is_on and not playback.watching:
             self._end(result)
 
     def _follow_goal(self, frame_time: float, pointer: Pixel | None) -> None:
@@ -298,14 +341,14 @@ class Game:
     @property
     def height(self) -> float:
         """The room that a row of chips takes at the top of the world [layout units]."""
-        return TOP + CHIP if self._is_on else 0.0
+        return TOP + CHIP if self.is_on else 0.0
 
     def draw(self, surface: pygame.Surface) -> None:
         """Draw score and goal, and the names of zones that are shown."""
         stage = self._stage()
         if ZONES in stage.renderer.overlays.shown:
             draw_zone_names(surface, self._ui, stage.camera, stage.playback.level.zones, stage.renderer.theme)
-        if not self._is_on:
+        if not self.is_on:
             return
         playback = self._playback
         chips = chips_of(playback.level, playback.current, self.result)

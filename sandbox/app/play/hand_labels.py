@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import BACKGROUND, TEXT, WARNING, Colour
+from sandbox.app.draw.colours import NOTICE, TEXT, WARNING, Colour
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -19,6 +19,8 @@ from sandbox.tools.tool import Tool
 TEXT_SIZE = 12.0
 ASIDE, ABOVE = 14.0, 26.0
 HINT_WIDTH, MOST_LINES = 260.0, 4
+# What a plate has around the words on it, and how much it hides of what is behind it, of 255.
+PLATE, OPACITY = 4.0, 225
 UNITS = ((1e9, "GN"), (1e6, "MN"), (1e3, "kN"), (1.0, "N"), (1e-3, "mN"))
 
 
@@ -62,12 +64,13 @@ def draw_hint(surface: pygame.Surface, ui: Ui, camera: Camera, tool: Tool) -> No
 
 
 def _write(surface: pygame.Surface, ui: Ui, place: tuple[float, float], lines: list[str], colour: Colour) -> None:
-    font = ui.font(TEXT_SIZE)
+    font, around = ui.font(TEXT_SIZE), ui.px(PLATE)
+    step, width = font.get_linesize(), max(font.size(line)[0] for line in lines)
+    plate = pygame.Surface((width + 2 * around, step * len(lines) + 2 * around), pygame.SRCALPHA)
+    pygame.draw.rect(plate, (*NOTICE, OPACITY), plate.get_rect(), border_radius=around)
     for row, line in enumerate(lines):
-        x, y = place[0], place[1] + row * font.get_linesize()
-        for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-            surface.blit(font.render(line, True, BACKGROUND), (x + dx, y + dy))
-        surface.blit(font.render(line, True, colour), (x, y))
+        plate.blit(font.render(line, True, colour), (around, around + row * step))
+    surface.blit(plate, (place[0] - around, place[1] - around))
 
 
 # Under what it is remembered.

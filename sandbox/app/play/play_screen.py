@@ -21,22 +21,24 @@ from sandbox.app.panel.contacts import ContactSettings, ask_for_pace, restart_wi
 from sandbox.app.panel.panel import MORE, SECTIONS, Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH, ROOM_FOR_PANEL, SidePanel
 from sandbox.app.parts.part_page import PartPage
+from sandbox.app.play.allowed import Allowed
 from sandbox.app.play.drive_keys import KEYS_HEIGHT, ROOM_BESIDE, DriveKeys, draw_key_caps
 from sandbox.app.play.game import Game
 from sandbox.app.play.hand_labels import draw_hint, draw_labels, keep_strength, kept_strength, next_strength
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.problems import Problems
-from sandbox.app.play.run_actions import EarlierRuns, ask_to_keep, toggle_melt
+from sandbox.app.play.run_actions import EarlierRuns, ask_to_keep, level_name, toggle_melt
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, run_parts
 from sandbox.app.play.thing_menu import cursor_actions, open_thing_menu
 from sandbox.app.play.time_bar import TimeBar
-from sandbox.app.play.toolbar import BAR_HEIGHT, NAMES, BarState, PartsPalette, Toolbar, refused_tools, state_of
+from sandbox.app.play.toolbar import BAR_HEIGHT, NAMES, BarState, PartsPalette, Toolbar, state_of
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.document.model import Level
-from sandbox.session.scene import RunScene
+from sandbox.session.scene import SUFFIX, RunScene
+from sandbox.session.tuning import TUNING
 from sandbox.tools.play_tools import PLAY_TOOLS
 from sandbox.tools.tool import PlayTool
 
@@ -75,7 +77,8 @@ class PlayScreen:
         self.source, self.of_document = source, of_document
         # Whether the person wants the panel; None: it is shown where there is room.
         self._wants_panel: bool | None = None
-        self.show_panel = app.ui.units[0] >= ROOM_FOR_PANEL
+        self._allowed = Allowed(self, playback.level)
+        self.show_panel = self._allowed.has_panel and app.ui.units[0] >= ROOM_FOR_PANEL
         self.show_palette = False
         self.palette: PartsPalette | None = None
         self.part_page: PartPage | None = None
@@ -94,9 +97,9 @@ class PlayScreen:
                 self.shape.open[name] = is_open
         self.stage.drag.strength = kept_strength(self.stage.drag.strength)
         self._keys = DriveKeys(playback)
-        self.problems = Problems(app, lambda: self.stage, self.say)
-        self._legend = Legend()
         can_end = self.is_game and bool(playback.level.rules or playback.level.goal)
+        self.problems = Problems(app, lambda: self.stage, self.say, not (can_end and playback.level.goal))
+        self._legend = Legend()
         self.game = Game(app, self, lambda: self.stage, can_end)
         self.actions = self._actions()
         app.show_replay_progress(playback, self.can_cancel)
@@ -178,17 +181,19 @@ class PlayScreen:
     def build(self, ui: Ui) -> None:
         """Lay the bar and the panel out again."""
         self._ui = ui
-        self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
+        wanted = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
+        self.show_panel = self._allowed.has_panel and wanted
         self._has_ghost = self.game.has_ghost
-        offered = {"keep": self.of_document, "ghost": self._has_ghost}
-        absent = {action for action, is_offered in offered.items() if not is_offered}
-        refused = refused_tools(self.playback.level)
-        self.toolbar = Toolbar(ui, self._app.act, absent, refused)
+        is_game = self.game.is_on
+        offered = {"keep": self.of_document, "ghost": self._has_ghost, "card": is_game, "as_it_was": is_game}
+        absent = self._allowed.absent | {action for action, is_offered in offered.items() if not is_offered}
+        # The editor is a button away from what it has open.
+        self.toolbar = Toolbar(ui, self._app.act, absent, {"share" if self.of_document else "edit"})
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
             wide, tall = (side / ui.scale for side in self.area[2:])
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall, refused)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall, self._allowed.tools)
         left, below = FIXES_PLACE
         left = left if self.palette is None else self.palette.right + below
         self.problems.build(ui, left, BAR_HEIGHT + below)
@@ -259,11 +264,12 @@ class PlayScreen:
     # Actions.
 
     def _actions(self) -> dict[str, Callable[[], object]]:
-        stage, files = self.stage, self._app.files
+        stage, files, allowed = self.stage, self._app.files, self._allowed
+        tools = {tool.action: partial(self._take_up, tool) for tool in PLAY_TOOLS.values()}
         return {
-            **{tool.action: partial(self._take_up, tool) for tool in PLAY_TOOLS.values()},
-            "palette": self._toggle_palette,
-            "catalogue": self._open_catalogue,
+            **{action: partial(allowed.if_any, action, take) for action, take in tools.items()},
+            "palette": partial(allowed.if_any, "palette", self._toggle_palette),
+            "catalogue": partial(allowed.if_any, "catalogue", self._open_catalogue),
             "let_go": self._let_go,
             **{name: partial(stage.toggle_view, name) for name in names_for(self.playback.level)},
             "hand": self._next_strength,
@@ -289,7 +295,7 @@ class PlayScreen:
             "save_recording": files.save_run,
             "press": self._press,
             **cursor_actions(stage, self.open_menu, self.say),
-            "panel": self._toggle_panel,
+            "panel": partial(allowed.if_any, "panel", self._toggle_panel),
             "gallery": self._app.open_gallery,
             "recordings": lambda: self._app.open_gallery("recordings"),
             "open": files.ask_to_open,
@@ -314,9 +320,9 @@ class PlayScreen:
         self._app.rebuild()
 
     def _take_up(self, tool: PlayTool) -> None:
-        """Take up a tool; one of the strip that is in use already gives way to the hand."""
+        """Take up a tool; one that is in use already gives way to the hand."""
         is_on_strip = tool.name in NAMES
-        if is_on_strip and self.stage.tool_name == tool.name:
+        if self.stage.tool_name == tool.name:
             self.stage.choose_tool(HAND_TOOL)
             return
         self.stage.choose_tool(tool.name)
@@ -382,7 +388,7 @@ class PlayScreen:
     def _press(self) -> None:
         if self.game.card is not None:
             self.game.card.press()
-        else:
+        elif self.stage.cursor is None or not self._allowed.refuses(self.camera.to_pixels(self.stage.cursor)):
             self.stage.press_cursor(pygame.key.get_mods())
             self._choose_clicked()
 
@@ -393,18 +399,18 @@ class PlayScreen:
         else:
             self.restart()
 
-    def restart(self) -> None:
-        """Begin the run again from its beginning."""
+    def restart(self, as_it_was: bool = False) -> None:
+        """Begin the run again; in a level with a goal what hands have tuned stays set, unless as_it_was."""
         self._app.end_messages(self)
         self._stop()
         earlier = self._app.scenes.set_aside(self.playback, self.source)
-        self.earlier.begin_again(self.playback, earlier if self.can_cancel else None)
         self.saved = None
-        self._begin_again()
+        self._begin_again(self.game.is_on and not as_it_was)
+        self.earlier.begin_again(self.playback, earlier if self.can_cancel else None)
         self._follow_run()
 
-    def _begin_again(self) -> None:
-        self.stage.replace_playback(self.playback.reset())
+    def _begin_again(self, keeps_tuning: bool) -> None:
+        self.stage.replace_playback(self.playback.reset(TUNING if keeps_tuning else ()))
 
     def _show_run(self, playback: Playback) -> None:
         """Show another run of the same level."""
@@ -451,6 +457,8 @@ class PlayScreen:
         """Hand a pointer event to the tool; a press takes the keyboard cursor away."""
         if kind == "down":
             self.stage.cursor = None
+            if self.game.open_at(pixel) or self._allowed.refuses(pixel):
+                return
         self.stage.point(kind, pixel, modifiers)
         self._choose_clicked()
 
@@ -508,13 +516,12 @@ class PlayScreen:
             self.palette.show(self.stage.tool_name)
         self.toolbar.show(
             BarState(
-                self.playback.level.name,
+                self.title(),
                 self.stage.tool_name,
                 self.playback.clock.paused,
                 self.playback.clock.speed,
                 self.playback.session.recording is not None,
                 self.earlier.can_undo(self.playback),
-                self.earlier.can_redo(self.playback),
                 self.show_panel,
                 self.show_palette,
                 self._app.chosen["sound"] == "on",
@@ -575,8 +582,9 @@ class PlayScreen:
         return "paused" if clock.paused else state_of(clock.speed)
 
     def title(self) -> str:
-        """The level's name."""
-        return self.playback.level.name
+        """The name under which the run is saved, or else the level's."""
+        name = level_name(self.playback.level.name)
+        return name if self.saved is None else self.saved[0].name.removesuffix(SUFFIX)
 
     def states(self) -> list[str]:
         """State words for the window's title: tick, speed, hands, recording, replay, outcome."""

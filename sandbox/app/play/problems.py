@@ -1,5 +1,6 @@
 """Problems: what goes wrong in a run is found, said, and mended by buttons that are there as long as there is need."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import partial
 
@@ -14,6 +15,7 @@ from sandbox.app.play.stage import Stage
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import show_lines
 from sandbox.app.widgets.ui import Ui
+from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Slots
@@ -26,11 +28,13 @@ from sandbox.session.commands import Free, MoveBody
 class Problems:
     """Bodies that are stuck or left the picture, values out of bounds and breaks in the run of a stage.
 
-    say: shows a line about the run.
+    say: shows a line about the run. brings_back: whether what left the picture can be had back.
     """
 
-    def __init__(self, app: Application, stage: Callable[[], Stage], say: Callable[[str], None]) -> None:
-        self._app, self._stage, self._say = app, stage, say
+    def __init__(
+        self, app: Application, stage: Callable[[], Stage], say: Callable[[str], None], brings_back: bool
+    ) -> None:
+        self._app, self._stage, self._say, self._brings_back = app, stage, say, brings_back
         self.begin()
         self.actions: dict[str, Callable[[], object]] = {
             "free": self._free, "bring_back": self._bring_back, "details": self._show_details
@@ -55,7 +59,7 @@ class Problems:
         words = {}
         if self.stuck.particles:
             words["free"] = "Free it"
-        if self.out_of_view.lost_count:
+        if self.out_of_view.lost_count and self._brings_back:
             words["bring_back"] = f"Bring back {self.out_of_view.lost_count}"
         if self._details:
             words["details"] = "Details"
@@ -89,15 +93,19 @@ class Problems:
 
     def _look_for_lost(self) -> None:
         was_over = self.out_of_view.is_over
-        self.out_of_view.update(self._stage().playback.session.world, self._pictures)
+        session, said = self._stage().playback.session, LEFT_VIEW if self._brings_back else LEFT_GAME
+        self.out_of_view.update(session.world, self._pictures, session.history.keyframes.first.snapshot)
         if self.out_of_view.is_over and not was_over:
-            self._say(LEFT_VIEW)
+            self._say(said)
         elif was_over and not self.out_of_view.is_over:
-            self._app.take_back(LEFT_VIEW)
+            self._app.take_back(said)
 
     def _bring_back(self) -> None:
         """Put bodies that left the picture back into it, at rest."""
         stage = self._stage()
+        if not self._brings_back:
+            self._say(NOTHING_BACK)
+            return
         count = put_back(stage.playback, stage.first_box, self._pictures)
         self.out_of_view = OutOfView()
         self._app.take_back(LEFT_VIEW)
@@ -223,6 +231,8 @@ def _to_be_moved(world: World, pair: tuple[int, int]) -> int:
 
 
 LEFT_VIEW = "Nearly everything has left the picture. Shift+J brings it back; R restarts."
+LEFT_GAME = "Nearly everything has left the picture. R begins again."
+NOTHING_BACK = "In a level with a goal nothing is brought back. R begins again."
 # A run is over once this part of the mass that moves has left; stubs may stay where something broke.
 GONE = 0.75
 # Ticks between two looks; after each step back in time there is one.
@@ -245,14 +255,14 @@ class OutOfView:
         # Since which tick a body is out of the picture, by its first particle.
         self._since: dict[int, int] = {}
 
-    def update(self, world: World, pictures: list[Box]) -> None:
-        """Look at a world; pictures [m]: what is seen at first, and what is seen now."""
+    def update(self, world: LevelWorld, pictures: list[Box], first: Snapshot) -> None:
+        """Look at a world; pictures [m]: what is seen at first, and what is seen now; first: how the run began."""
         if 0 <= world.tick - self._tick < _EVERY:
             return
         if world.tick < self._tick:
             self._since.clear()
         self._tick, rate = world.tick, world.settings.tick_rate
-        bodies = {int(body[0]): body for body in bodies_beyond(world, pictures)}
+        bodies = {int(body[0]): body for body in bodies_beyond(world, pictures, first)}
         self._since = {first: self._since.get(first, world.tick) for first in bodies}
         gone = [
             body for first, body in bodies.items()
@@ -266,7 +276,7 @@ class OutOfView:
 def put_back(playback: Playback, box: Box, pictures: list[Box]) -> int:
     """Put every body that is beyond the pictures [m] into a box [m], in one gesture; how many there are."""
     world, gesture = playback.session.world, playback.session.new_gesture()
-    bodies = bodies_beyond(world, pictures)
+    bodies = bodies_beyond(world, pictures, playback.session.history.keyframes.first.snapshot)
     left, bottom, right, top = box
     for number, body in enumerate(bodies):
         # Side by side near the top, at rest.
@@ -280,10 +290,11 @@ def put_back(playback: Playback, box: Box, pictures: list[Box]) -> int:
     return len(bodies)
 
 
-def bodies_beyond(world: World, pictures: list[Box]) -> list[Slots]:
+def bodies_beyond(world: LevelWorld, pictures: list[Box], first: Snapshot) -> list[Slots]:
     """The bodies, by their particles, that move freely and whose middle is in none of the pictures [m].
 
-    What hangs on something that is pinned, such as the end of a torn rope, stays where it is.
+    What hangs on something that is pinned stays where it is, and so do stubs, which are less than half of what they
+    were cut from, and what was out in the first state of the run.
     """
     moving = shown_particles(world) & (world.inverse_mass > 0.0)
     if not _is_beyond(world.position[moving], pictures).any():
@@ -295,7 +306,27 @@ def bodies_beyond(world: World, pictures: list[Box]) -> list[Slots]:
     order = shown[np.argsort(label[shown], kind="stable")]
     bodies = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
     free = [body for body in bodies if moving[body].all() and np.isfinite(world.position[body]).all()]
-    return [body for body in free if _is_beyond(world.position[body].mean(axis=0)[None], pictures)[0]]
+    return [body for body in free if _has_left(world, body, pictures, first) and not _is_stub(world, body)]
+
+
+def _has_left(world: World, body: Slots, pictures: list[Box], first: Snapshot) -> bool:
+    """Whether the middle of a body is beyond the pictures [m] and was not so in the first state of a run."""
+    is_new = body[-1] >= len(first.position)
+    places = [world.position, *([] if is_new else [first.position])]
+    beyond = [bool(_is_beyond(place[body].mean(axis=0)[None], pictures)[0]) for place in places]
+    return beyond[0] and not any(beyond[1:])
+
+
+def _is_stub(world: LevelWorld, body: Slots) -> bool:
+    """Whether a body is a strand, and less than half of the thing that it was cut from, by mass."""
+    holds = world.spring_active & (world.material >= 0)
+    if np.isin(world.particle_a[holds], body).sum() >= len(body):
+        return False
+    things = [name.rpartition(".")[0] or name for name in world.particle_names]
+    counts = Counter(things[slot] for slot in body)
+    thing = counts.most_common(1)[0][0]
+    whole = [slot for slot, name in enumerate(things) if name == thing and world.particle_active[slot]]
+    return float(world.mass[body].sum()) < 0.5 * float(world.mass[whole].sum())
 
 
 def _is_beyond(points: np.ndarray, pictures: list[Box]) -> np.ndarray:

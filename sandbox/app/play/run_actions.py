@@ -6,7 +6,7 @@ from dataclasses import replace
 from sandbox.app.contracts.application import Application
 from sandbox.app.run.playback import RAMP_TIME, Playback
 from sandbox.app.widgets.dialogs import choose
-from sandbox.editor.document import Document, EditError
+from sandbox.editor.document import UNTITLED, Document, EditError
 from sandbox.editor.edits.bake import (
     keep_added,
     keep_coefficients,
@@ -24,6 +24,15 @@ BEGUN_AGAIN = "Back to the beginning. Ctrl+Z brings back what was there."
 BROUGHT_BACK = "The run before is back, as it stood. Ctrl+Y goes on to the other one."
 
 
+# What the place is called that New begins with.
+NEW_PLACE = "New place"
+
+
+def level_name(name: str) -> str:
+    """What a level of that name is called for people."""
+    return NEW_PLACE if name == UNTITLED else name
+
+
 class EarlierRuns:
     """The runs of a level around the present one; before: how the one stood that was there last.
 
@@ -36,10 +45,12 @@ class EarlierRuns:
         self.before, self._show, self._say = before, show, say
         # The run that was left by going back, and the revision of the one gone back to.
         self._after: tuple[Playback, int] | None = None
+        # The run that has begun again, where what it began with is no deed to be undone.
+        self._begun: Playback | None = None
 
     def begin_again(self, playback: Playback, earlier: RunScene | None) -> None:
-        """Remember the run that another takes the place of, as it stood; None where nothing was done in it."""
-        self._after = None
+        """Remember the run that a new one takes the place of, as it stood; None where nothing was done in it."""
+        self._after, self._begun = None, playback
         if earlier is not None:
             self.before = earlier
             self._say(BEGUN_AGAIN)
@@ -56,7 +67,8 @@ class EarlierRuns:
         """Take the last gesture back, or bring back the run that was there before."""
         playback.apply_pending()
         before = self.before
-        if playback.session.can_undo or before is None:
+        is_untouched = playback is self._begun and playback.scene() is None
+        if before is None or (playback.session.can_undo and not is_untouched):
             playback.submit_undo()
             return
         earlier = Playback(before.level, first=before)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.base.idle import RestTimer
 from sandbox.app.base.loop import Profile
-from sandbox.app.draw.camera import Box, Camera, bounds
+from sandbox.app.draw.camera import FIT_MARGIN, Box, Camera, bounds
 from sandbox.app.draw.picture import PartGhost, particles_of, view_of
 from sandbox.app.draw.renderer import Detail, Overlay, Renderer
 from sandbox.app.film.film import Film
@@ -18,7 +18,7 @@ from sandbox.app.run.playback import Playback
 from sandbox.editor.edits.joining import joining_commands, sized
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.applied_forces import Pull, pulls_of
-from sandbox.physics.analysis.query import nearest_particle, shown_particles
+from sandbox.physics.analysis.query import nearest_particle, particle_at, shown_particles
 from sandbox.physics.arrays import Slots
 from sandbox.physics.components import body_of
 from sandbox.physics.geometry.segment import lengths
@@ -34,6 +34,9 @@ from sandbox.tools.tool import PointerEvent, Tool, usual_size
 # How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
 PICK_RADIUS = 14.0
 CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
+
+# What is above of the height that a view has to spare, where there is ground; what stays free round a level's view.
+SKY, VIEW_MARGIN = 0.8, 0.03
 
 # A run in which nothing is seen to move for so long [s] is at rest.
 AT_REST_AFTER = 1.0
@@ -169,7 +172,10 @@ class Stage:
         self._fit(box)
 
     def _fit(self, box: Box) -> None:
-        self.camera.fit(box)
+        level = self.playback.level
+        # There is more to see above ground than in it, and a view of the level's own has its margins.
+        margin = VIEW_MARGIN if box == level.view else FIT_MARGIN
+        self.camera.fit(box, SKY if level.terrain else 0.5, margin)
         self._box, self._fitted_at = box, (self.camera.centre, self.camera.zoom)
 
     @property
@@ -213,7 +219,7 @@ class Stage:
         event = PointerEvent(
             kind,
             self.camera.to_world(pixel),
-            PICK_RADIUS * self.renderer.scale / self.camera.zoom,
+            self._within,
             button,
             bool(modifiers & pygame.KMOD_SHIFT),
             bool(modifiers & pygame.KMOD_CTRL),
@@ -318,8 +324,16 @@ class Stage:
         """The particle at the keyboard cursor; None: there is no cursor, or nothing at it."""
         if self.cursor is None:
             return None
-        within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
-        return nearest_particle(self.playback.current, self.cursor, within)
+        return nearest_particle(self.playback.current, self.cursor, self._within)
+
+    def at_pixel(self, pixel: Pixel) -> int | None:
+        """The particle of the thing at a pixel; None: there is nothing."""
+        return particle_at(self.playback.current, self.camera.to_world(pixel), self._within)
+
+    @property
+    def _within(self) -> float:
+        """How far off [m] a press still hits a particle."""
+        return PICK_RADIUS * self.renderer.scale / self.camera.zoom
 
     # A frame.
 
@@ -358,8 +372,7 @@ class Stage:
         self.rest_timer.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         at = None if pointer is None else self.camera.to_world(pointer)
         self.tool.hover(at if self.cursor is None else self.cursor)
-        within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
-        self._hovered = None if at is None else self.tool.target(at, within, self.playback.current)
+        self._hovered = None if at is None else self.tool.target(at, self._within, self.playback.current)
 
     def film(self, span: tuple[int, int]) -> Film:
         """A film of some ticks of the run as the stage shows it."""

@@ -1,11 +1,11 @@
 """Playback: the run on the screen: a session, the clock that drives it and the two snapshots that are drawn."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.scene import RunScene, SceneTaker
 from sandbox.session.session import Session
 from sandbox.session.transaction import Interrupted
+from sandbox.session.tuning import tuning_of
 from sandbox.tools.tool import Response
 
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
@@ -128,11 +129,21 @@ class Playback:
         """The last tick that `seek` can reach."""
         return self.travel.length(self.watching)
 
-    def reset(self) -> "Playback":
-        """Go back to the beginning of the level or replay, at the same speed."""
-        fresh = Playback(self.level, self.replay)
+    def reset(self, kept: Collection[type[Command]] = ()) -> Self:
+        """Go back to the beginning of the level or replay, at the same speed; kept: kinds of TUNING that stay set."""
+        fresh = type(self)(self.level, self.replay)
         fresh.clock = replace(self.clock, speed=abs(self.clock.speed), accumulator=0.0, single_steps=0)
         fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
+        commands = [] if self.replay is not None else tuning_of(self.session, kept)
+        if commands:
+            gesture = fresh.session.new_gesture()
+            for command in commands:
+                fresh.session.submit(command, gesture)
+            fresh.session.apply_pending()
+            # What was set of a thing that joined later cannot be set yet.
+            fresh.session.take_messages()
+            fresh.first = fresh._taker.take()
+            fresh.current = fresh.previous = fresh.session.snapshot()
         return fresh
 
     def scene(self) -> RunScene | None:

@@ -68,7 +68,23 @@ class Amount:
         return f"use a number from {self.low:g} to {self.high:g}"
 
 
-Setting = OneOf | Amount
+@dataclass(frozen=True)
+class Address:
+    """A setting that is the address of a site; "": there is none."""
+
+    name: str
+    label: str
+    group: str
+    tip: str = ""
+    default: str = ""
+
+    def fault_of(self, value: Any) -> str | None:
+        """Why a value cannot be taken."""
+        is_one = isinstance(value, str) and (not value or value.startswith(("https://", "http://")))
+        return None if is_one else "an address begins with https://"
+
+
+Setting = OneOf | Amount | Address
 SETTINGS: tuple[Setting, ...] = (
     OneOf("theme", "Theme", "Look", (("system", "As the system"), ("light", "Light"), ("dark", "Dark")),
           "Some levels set their own"),
@@ -81,6 +97,7 @@ SETTINGS: tuple[Setting, ...] = (
     Amount("volume", "Volume", "Sound", 0.0, 1.0, 0.1, 0.6),
     OneOf("hints", "Hints", "Help", (("show", "Show"), ("hide", "Hide")),
           "Show the level's description when it starts; F2 shows it again"),
+    Address("link_site", "Site for links", "Sharing", "Where the pages lie that sandbox site wrote: links open them"),
 )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ import pygame
 
 from sandbox.app.base.shortcuts import Mode, Shortcut, combination_of, shortcuts, spoken, with_keys
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, mixed
-from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
+from sandbox.app.settings.chosen import SETTINGS, Address, Amount, Chosen, OneOf
 from sandbox.app.widgets.dialogs import MARGIN, Dialog
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock, text_height, wrapped
@@ -102,8 +102,10 @@ class SettingsSheet:
                 self._heading(group)
             if isinstance(setting, OneOf):
                 self._add_choice(setting)
-            else:
+            elif isinstance(setting, Amount):
                 self._add_amount(setting)
+            else:
+                self._add_address(setting)
 
     def _row(self, label: str, tip: str) -> tuple[float, float]:
         """Make the label of a row and the line about it; gives left edge and width of the place for its buttons."""
@@ -124,6 +126,19 @@ class SettingsSheet:
         choose = partial(self._choose, setting.name)
         row = self._ui.choice(self._ui.rect(left, self._y + 2, width, BUTTON), options, choose, self.area.content)
         row.show(self._chosen[setting.name])
+        self._y += ROW
+
+    def _add_address(self, setting: Address) -> None:
+        def take(typed: str) -> bool:
+            fault = setting.fault_of(typed.strip())
+            self._note.show_text(f"{setting.label}: {fault}." if fault else "")
+            if fault is None:
+                self._chosen.choose(setting.name, typed.strip() or None)
+            return fault is None
+
+        left, width = self._row(setting.label, setting.tip)
+        place = self._ui.rect(left, self._y + 2, width, BUTTON)
+        self._ui.field(place, self._chosen[setting.name], take, self.area.content, 400)
         self._y += ROW
 
     def _choose(self, name: str, value: object) -> None:

@@ -12,12 +12,11 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT, Colour
 from sandbox.app.film.film import Film, FilmPair
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
-from sandbox.app.widgets.dialogs import MARGIN, Dialog, ask
+from sandbox.app.widgets.dialogs import MARGIN, Dialog
 from sandbox.app.widgets.slider import RangeSlider
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
-from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands.records import script_of
 from sandbox.session.replay.link import run_of
@@ -321,14 +320,9 @@ class ProgressBar(Widget):
         return surface
 
 
-# Under what the address of a site is remembered.
-_SITE = "link_site"
 # Wall time [s] of a frame.
 _BUDGET = 0.02
-_LINK_HINT = (
-    "The address of the site where the page of this level lies (sandbox site writes one). Empty: the run alone, "
-    "for sandbox open."
-)
+NO_SITE = "sandbox open plays it. With the address of a site in the settings, any browser does."
 
 
 class LinkCopying:
@@ -339,27 +333,17 @@ class LinkCopying:
         self._slices: Generator[float, None, str] | None = None
         self._done = 0.0
 
-    def ask(self) -> None:
-        """Ask for the site, and begin."""
-        if self._app.play is None:
+    def begin(self) -> None:
+        """Begin with the run so far: a link to the site of the settings, or else for `sandbox open`."""
+        play = self._app.play
+        if play is None:
             self._app.say("There is nothing to share yet: play a level first.")
-            return
-        site = preference(_SITE)
-        known = site if isinstance(site, str) else ""
-        ask(self._app.ui, "Copy a link to this run", _LINK_HINT, known, "Copy link", self._begin)
+        else:
+            self._slices = link_to(so_far(play.playback.session), self._app.chosen["link_site"], 0)
 
     def status(self) -> list[tuple[str, Colour]]:
         """The status line's words about the work."""
         return [] if self._slices is None else [(f"making the link: {100.0 * self._done:.0f} %", ACCENT)]
-
-    def _begin(self, site: str) -> str | None:
-        if site and not site.startswith(("https://", "http://")):
-            return "An address begins with https://"
-        play = self._app.play
-        if play is not None:
-            set_preference(_SITE, site)
-            self._slices = link_to(so_far(play.playback.session), site, 0)
-        return None
 
     @property
     def moves(self) -> bool:
@@ -381,7 +365,8 @@ class LinkCopying:
 
     def _copy(self, link: str) -> None:
         copied = copy_text(link)
-        self._app.say(f"The link is copied, {len(link):,} characters." if copied else "No clipboard was found.")
+        said = f"The link is copied, {len(link):,} characters." if copied else "No clipboard was found."
+        self._app.say(said if "://" in link or not copied else f"{said} {NO_SITE}")
 
 
 def so_far(session: Session) -> Replay:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.app.base.loop import at_once
-from sandbox.app.base.sag_map import SagMap, own_of, sag_sentence, scale_of, subject_words, word_pairs
+from sandbox.app.base.sag_map import NO_SAG, SagMap, own_of, sag_sentence, scale_of, subject_words, word_pairs
 from sandbox.app.draw.picture import particles_of
 from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
@@ -40,6 +40,7 @@ from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands import Command
 from sandbox.session.commands.records import ScriptLine, to_record
+from sandbox.session.outcome import star_words
 from sandbox.session.replay.format import header, seal
 from sandbox.session.replay.link import level_record
 from sandbox.session.session import Session
@@ -83,7 +84,7 @@ def playable_in_slices(
     until = [line for line in script if ticks is not None and line.tick <= ticks]
     played = None if ticks is None else (yield from run_for_pages(level, until, ticks))
     world = build_world(level)
-    scene = scene_of(level, take(world))
+    scene, hands = scene_of(level, take(world)), level.hands
     data = {
         "name": level.name,
         "scene": scene,
@@ -93,6 +94,9 @@ def playable_in_slices(
         "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
         "goals": _goals(level, world),
+        "absent": []
+        if hands is None
+        else [name for name, any_of in _NEEDS.items() if not any(map(hands.allows, any_of))],
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "link": level_record(level) | {"physics": PHYSICS_VERSION},
@@ -111,6 +115,14 @@ def _recording(played: RunForPages) -> dict[str, Any]:
     return {"commands": commands, "hashes": played.hashes}
 
 
+# Buttons of a page and parts of its panel, by what hands have to be allowed for them: one of these.
+_NEEDS = {
+    "drag": ("grab",), "pin": ("pin",), "cut": ("cut",), "make": ("add", "remove"), "erase": ("remove",),
+    **dict.fromkeys(("jelly", "wood", "steel", "rope", "spring", "rod", "parts", "catalogue"), ("add",)),
+    "springs": ("material",), "world": ("air",), "engineers": ("solver",), "tune": ("material", "air", "solver"),
+}  # fmt: skip
+
+
 def _checks(level: Level, world: World) -> list[dict[str, Any]]:
     """Checks of a level that a page can follow while somebody plays: those that hold no key, without energies."""
     measured = [check for check in level.checks if not check.hold and check.metric not in NOT_MEASURED]
@@ -121,7 +133,8 @@ def _goals(level: Level, world: World) -> dict[str, Any]:
     """A level's goal and counters, and the budgets of its hands, as a page shows them."""
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
     counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
-    return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules)}
+    stars = {rule: words for rule in range(len(level.rules)) if (words := star_words(level, rule))}
+    return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars}
 
 
 def _check(check: CheckDef, world: World) -> dict[str, Any]:
@@ -315,6 +328,6 @@ def _words(
     return {
         "words": pairs,
         "subject": subject_words(subject.name, support),
-        "says": {"sag": said.sag, "flat": said.flat, "flat_from": FLAT},
+        "says": {**said._asdict(), "flat_from": FLAT, "none_below": NO_SAG},
         "map": SagMap.of(motion, scale_of(motion, pairs, own)).as_data(),
     }

@@ -20,7 +20,7 @@ from sandbox.physics import world
 from sandbox.physics.analysis import applied_forces, query
 from sandbox.physics.meshing import fitting
 from sandbox.physics.softness import body_motion
-from sandbox.session import summary
+from sandbox.session import summary, tuning
 from sandbox.session.replay import format, link
 from sandbox.tools import drawing, pulling
 
@@ -37,6 +37,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "LINK": _of(link, "MARK", "VERSION", "LONGEST", "UNPACKED_LIMIT", "RUN_LIMIT", "COMMAND_LIMIT")
         | _of(link, "FARTHEST", "PER_METRE", "HANDS", "MOVE"),
         "CHECKS": _of(checks, "STILL") | _of(summary, "STRAIN_WINDOW"),
+        "TUNING": {"KINDS": [each.type for each in tuning.TUNING], "SUBJECTS": tuning.SUBJECTS},
         "PACE": {"LONGEST": loop.LONGEST_FRAME, "BUDGET": playback.TICK_BUDGET},
         "HANDS": {
             "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": applied_forces.HAND_AT_LIMIT,

@@ -45,6 +45,11 @@ class Button(Written):
         self._is_selected = False
 
     @property
+    def is_main(self) -> bool:
+        """Whether it does what most people want on its page."""
+        return self._style is BUTTONS["primary"]
+
+    @property
     def font(self) -> pygame.font.Font:
         """The font of the button's text."""
         return self.ui.font(self._style.size)

@@ -15,8 +15,8 @@ import pygame
 
 from sandbox.level.format.shipped import shipped_folder
 
-# The font in assets/fonts with its licence.
-_FILES = {False: "AtkinsonHyperlegible-Regular.ttf", True: "AtkinsonHyperlegible-Bold.ttf"}
+# The font in assets/fonts with its licence: Atkinson Hyperlegible with zeros that are not slashed.
+_FILES = {False: "SpringSandboxSans-Regular.ttf", True: "SpringSandboxSans-Bold.ttf"}
 # Its sister for code, whose letters are all of one width.
 _MONO = "AtkinsonHyperlegibleMono-Regular.ttf"
 # All letters up to these are in the font, and in its sister; a character that no font has, as which they draw others.

@@ -12,7 +12,7 @@ from sandbox.app.widgets.button import Button, Choice, Icon
 from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.styles import TIP, Plate, box
 from sandbox.app.widgets.texts import Label, line_height, wrapped
-from sandbox.app.widgets.widget import Pixel, Widget, WindowLayout
+from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget, WindowLayout
 
 # The tip comes after so long [s].
 DELAY = 0.6
@@ -321,13 +321,20 @@ class Ui(WindowLayout):
         if event.key == pygame.K_ESCAPE:
             return self._escape()
         if focus is None:
-            return False
+            return event.key in ENTER_KEYS and self._press_main()
         if focus.press_key(event):
             return True
         if isinstance(focus, Button) and self._sheets and event.key in ARROWS:
             self._step_to_button(focus, *ARROWS[event.key])
             return True
         return False
+
+    def _press_main(self) -> bool:
+        """Press the main button of the page on top, after a click beside its fields; whether there is one."""
+        main = next((button for button in self.buttons() if button.is_main), None) if self._sheets else None
+        if main is not None:
+            main.action()
+        return main is not None
 
     def _step_to_button(self, start: Button, dx: int, dy: int) -> None:
         """Give the keyboard to the nearest button of a page that way, if there is one."""

@@ -66,6 +66,8 @@ class App:
         self.running = True
         # Whether the window's title says what happens, too.
         self.says_states = False
+        # Where the pages of the gallery were left, by mode and page.
+        self._gallery_places: dict[tuple[Mode, str], tuple[str, float]] = {}
         self.screen: Screen | None = None
         # What was on it when a frame ended last.
         self._seen: Screen | None = None
@@ -77,7 +79,7 @@ class App:
         self.guide = Guide(self, self.documents)
         self.sharing = Sharing(self)
         self.link_copying = LinkCopying(self)
-        self.share_page = SharePage(self, self.sharing, self.link_copying.ask)
+        self.share_page = SharePage(self, self.sharing, self.link_copying.begin)
         self.sounds = Sounds(self.chosen, time.perf_counter)
         self._progress = RunProgress(self)
         self._toys = ToyStarter()
@@ -197,11 +199,13 @@ class App:
         self._describe("")
         if self.screen is not None:
             self.end_messages(self.screen)
-        self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
+        place = self._gallery_places.get((self.mode, section), ("", 0.0))
+        self.gallery = Gallery(self.ui, self, section, self.close_gallery, query, place)
 
     def close_gallery(self) -> None:
         """Go back to the screen, where there is one."""
         if self.gallery is not None:
+            self._gallery_places[self.mode, self.gallery.section] = self.gallery.place
             self.gallery.close()
             self.gallery = None
             # Its cards hold tens of megabytes of pictures.
@@ -225,7 +229,7 @@ class App:
         return {
             "hint": self._show_hint,
             "share": self.share_page.open,
-            "copy_link": self.link_copying.ask,
+            "copy_link": self.link_copying.begin,
             "compare": self._compare,
             "sound": self._toggle_sound,
             "toy": self._start_toy,

@@ -1,5 +1,6 @@
 // Goals: what a level asks of who plays it, its counters and clock, and a card where it is won or lost.
 import { element } from './panel.js';
+import { TUNING } from './shared.js';
 /** @import { Toy } from './toy.js' */
 /** @import { Goals as Told } from './types.js' */
 
@@ -13,7 +14,8 @@ const starPath = () => `M${Array.from({ length: 2 * POINTS }, (_, k) => {
 const number = new Intl.NumberFormat('en', { maximumFractionDigits: 2 });
 
 /** Elements that it fills: the line of the goal, that of counters and clock, and the card with its parts.
- * @typedef {{ goal: HTMLElement, score: HTMLElement, end: HTMLElement, again: HTMLElement, on: HTMLElement }} Places */
+ * @typedef {{ goal: HTMLElement, score: HTMLElement, end: HTMLElement, again: HTMLElement, was: HTMLElement,
+ * on: HTMLElement }} Places */
 
 export class Goals {
   #shown = '';
@@ -36,6 +38,13 @@ export class Goals {
       toy.play();
     });
     places.end.addEventListener('keydown', (event) => this.#key(event));
+    places.was.addEventListener('click', () => {
+      this.#close();
+      toy.restart(false);
+    });
+    // What tells how the run ended has the card again.
+    places.score.addEventListener('click', () => this.#open());
+    places.score.addEventListener('keydown', ({ key }) => (key === 'Enter' || key === ' ') && this.#open());
     toy.addEventListener('outcome', () => this.#open());
     toy.addEventListener('jump', () => {
       if (toy.outcome?.tick !== toy.run.time) this.#close();
@@ -61,14 +70,24 @@ export class Goals {
 
   // Counters and clock, as they are here in time.
   #follow() {
-    const { toy, told: { counters, hasClock } } = this, values = toy.world.view('state.counter');
-    const said = counters.map(([place, text]) => `${text} ${number.format(values[place])}`);
+    const { toy, told: { hasClock } } = this, { outcome } = toy, said = this.#counted();
     // The clock of a run that is over stands.
-    if (hasClock) said.push(`${((toy.outcome?.tick ?? toy.run.time) / toy.rate).toFixed(1)} s`);
+    if (hasClock) said.push(`${((outcome?.tick ?? toy.run.time) / toy.rate).toFixed(1)} s`);
+    if (outcome) said.push(outcome.isWon ? '\u2605'.repeat(outcome.stars) + '\u2606'.repeat(STARS - outcome.stars) : 'Lost');
     const text = said.join('   ');
     if (text === this.#shown) return;
     this.#shown = this.places.score.textContent = text;
     this.places.score.hidden = !text;
+    for (const [name, value] of [['role', 'button'], ['tabindex', '0'], ['title', 'How it ended']]) {
+      if (outcome) this.places.score.setAttribute(name, value);
+      else this.places.score.removeAttribute(name);
+    }
+  }
+
+  // Counters with their names.
+  #counted() {
+    const values = this.toy.world.view('state.counter');
+    return this.told.counters.map(([place, text]) => `${text} ${number.format(values[place])}`);
   }
 
   #open() {
@@ -77,14 +96,17 @@ export class Goals {
     toy.pause();
     this.#title();
     const seconds = `${(outcome.tick / toy.rate).toFixed(2)} s`;
-    end.querySelector('p')?.replaceChildren(outcome.text, outcome.text ? element('br') : '', seconds);
+    const next = outcome.isWon ? this.told.stars[outcome.rule]?.[outcome.stars - 1] : undefined;
+    const lines = [outcome.text, [seconds, ...this.#counted()].join(', '), next].filter(Boolean);
+    end.querySelector('p')?.replaceChildren(...lines.flatMap((line, k) => [k ? element('br') : '', line ?? '']));
     const earned = end.querySelector('div');
     earned?.replaceChildren(...stars(outcome.stars));
     earned?.setAttribute('aria-label', starText(outcome.stars));
     earned?.toggleAttribute('hidden', !outcome.isWon);
     end.classList.toggle('lost', !outcome.isWon);
     // Who has lost is not sent on.
-    for (const next of end.querySelectorAll('a')) next.hidden = !outcome.isWon;
+    for (const link of end.querySelectorAll('a')) link.hidden = !outcome.isWon;
+    this.places.was.hidden = !toy.run.commands.some(({ record }) => record && TUNING.KINDS.includes(record.type));
     end.hidden = false;
     this.places.again.focus({ preventScroll: true });
   }

@@ -71,7 +71,7 @@ class Page {
     this.catalogue = element('select', { id: 'catalogue', className: 'part' }, new Option('More', ''),
       ...level.about.adding.catalogue.map(({ id, name }) => new Option(name[0].toUpperCase() + name.slice(1), id)));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
-      again: byId('end-again'), on: byId('end-on') });
+      again: byId('end-again'), was: byId('end-was'), on: byId('end-on') });
     this.menu = new Menu(byId('menu'), this.toy);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
@@ -160,6 +160,11 @@ class Page {
       toy.pause();
       toy.goTo(Number(byId('time').value));
     });
+    // What hands may not do here has no button, no part of the panel and no key.
+    for (const name of toy.level.absent) {
+      for (const each of document.querySelectorAll(`#${name}, #panel .${name}`)) Object.assign(each, { hidden: true });
+      delete acts[name];
+    }
     // The toy hears keys first.
     addEventListener('keydown', (event) => {
       const isCommand = event.ctrlKey || event.metaKey;

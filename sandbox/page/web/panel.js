@@ -76,8 +76,8 @@ export class Panel {
     });
     this.gravity = ['x', 'y'].map((axis, k) => this.#gravityField(axis, k));
     this.springs.append(all, this.words, this.says, this.pad, ...this.sliders.map(({ row }) => row));
-    root.append(this.springs, element('h2', { textContent: 'World' }),
-      element('div', { className: 'fields' }, ...this.gravity.map(({ label }) => label)));
+    root.append(this.springs, element('div', { className: 'world' }, element('h2', { textContent: 'World' }),
+      element('div', { className: 'fields' }, ...this.gravity.map(({ label }) => label))));
     this.pad.addEventListener('pointerdown', (event) => this.#drag(event));
     this.pad.addEventListener('pointermove', (event) => this.#drag(event));
     this.pad.addEventListener('lostpointercapture', () => this.#end());
@@ -169,6 +169,7 @@ export class Panel {
   #sentence({ says, sags }, pair) {
     if (!says || !sags) return '';
     const sag = pair.every((value) => value === 1) ? 0 : sags.at(...pair);
+    if (sag < says.none_below) return `${says.none}.`;
     return `${sag >= says.flat_from ? says.flat : says.sag.replace('{}', perCent(sag))}.`;
   }
 
@@ -191,7 +192,7 @@ export class Panel {
   show() {
     const offered = this.#offered;
     if (!this.chosen || !offered.includes(this.chosen)) this.chosen = offered[0] ?? null;
-    this.springs.hidden = !this.chosen;
+    this.springs.hidden = this.level.absent.includes('springs') || !this.chosen;
     this.materials.forEach((each, k) => { this.choice.options[k].disabled = !offered.includes(each); });
     this.choice.value = String(this.chosen ? this.materials.indexOf(this.chosen) : -1);
     const { gravity } = this.run.world.settings();

@@ -60,7 +60,7 @@ export function outcome(world) {
     if (tick < 0 || !action || (found && found.tick <= tick)) return;
     const isWon = action.win !== undefined;
     found = { isWon, text: action.win ?? action.fail ?? '', stars: isWon ? stars[rule] || starsOf(world, action, tick) : 0,
-      tick };
+      tick, rule };
   });
   return found;
 }

@@ -1,5 +1,6 @@
 // Run: what was done to a world and when, so that time can go back; the commands of a run make it again, bit for bit.
 import { Refusal } from './commands.js';
+import { TUNING } from './shared.js';
 /** @import { Command, Done } from './types.js' */
 /** @import { World } from './world.js' */
 
@@ -156,6 +157,24 @@ export class Run {
    * @type {(tick: number) => number} */
   keptBefore(tick) {
     return (this.kept.findLast((each) => each.time <= tick) ?? this.kept[0]).time;
+  }
+
+  /** Go back to the beginning; keepsTuning: with what was set of materials, bodies, air and solver until now.
+   * @type {(keepsTuning: boolean) => void} */
+  beginAgain(keepsTuning) {
+    /** @type {Map<string, Command>} */
+    const tuned = new Map(), gesture = this.newGesture();
+    for (const { record, tick } of keepsTuning ? this.commands : []) {
+      if (!record || tick > this.time || !TUNING.KINDS.includes(record.type)) continue;
+      const kept = /** @type {Command} */ ({ ...record, duration: 0 }), set = Object.entries(kept).filter(([, value]) => value !== null);
+      const key = set.map(([name, value]) => (name === 'type' || TUNING.SUBJECTS.includes(name) ? `${name} ${value}` : name)).join();
+      tuned.delete(key);
+      tuned.set(key, kept);
+    }
+    this.seek(0, 0);
+    this.takeOver();
+    // What was set of a thing that joined later cannot be set yet.
+    for (const record of tuned.values()) this.submit(record, gesture, () => {});
   }
 
   // Go back to before the last gesture. Whether there was one.

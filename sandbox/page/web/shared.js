@@ -21,6 +21,10 @@ export const CHECKS = {
   STILL: 0.05,
   STRAIN_WINDOW: 2,
 };
+export const TUNING = {
+  KINDS: ['set_coefficients', 'set_firmness', 'set_inflation', 'set_gravity', 'set_air', 'set_solver'],
+  SUBJECTS: ['material', 'body'],
+};
 export const PACE = {
   LONGEST: 0.1,
   BUDGET: 0.05,

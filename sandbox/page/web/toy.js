@@ -352,14 +352,14 @@ export class Toy extends EventTarget {
     this.#jump(() => this.run.seek(tick));
   }
 
-  restart() {
+  // In a level with a goal what was tuned stays.
+  restart(keepsTuning = this.level.goals?.goal !== '') {
     this.#jump(() => {
       if (this.level.recording) {
         this.run.seek(0);
         return;
       }
-      this.run.seek(0, 0);
-      this.run.takeOver();
+      this.run.beginAgain(keepsTuning);
     });
     this.play();
   }

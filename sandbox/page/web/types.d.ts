@@ -124,6 +124,7 @@ export interface Outcome {
   text: string;
   stars: number;
   tick: number;
+  rule: number;
 }
 
 // What the module of kernels exports.
@@ -251,7 +252,7 @@ export interface MaterialRow {
   is_first: boolean;
   words: Record<string, Point>;
   subject?: string;
-  says?: { sag: string; flat: string; flat_from: number };
+  says?: { sag: string; flat: string; none: string; flat_from: number; none_below: number };
   map?: SagMapData;
 }
 
@@ -285,6 +286,8 @@ export interface Level {
   ramp_ticks: number;
   checks: Check[];
   goals: Goals;
+  // What hands may not use: buttons, and parts of the panel.
+  absent: string[];
   keys: Record<string, [part: number, value: number][]>;
   header: string;
   link: LevelLink;
@@ -298,6 +301,8 @@ export interface Goals {
   goal: string;
   counters: [place: number, text: string][];
   hasClock: boolean;
+  // What the second and the third star take, by the rules that win.
+  stars: Record<number, string[]>;
 }
 
 // Gives a world of its own before the first tick.
