@@ -112,9 +112,8 @@ class Toolbar:
         ui, below, states = self._ui, self.buttons["more"].rect, self._menu_states()
         rows = [Row(label_of(action, "play"), aside=states.get(action, keys_of(action))) for action in self.left_out]
         width = min(ui.px(MENU_WIDTH), ui.size[0])
-        open_menu_at(
-            ui, (below.right - width, below.bottom), width, rows, lambda index: self._press(self.left_out[index])
-        )
+        place = below.right - width, below.bottom
+        open_menu_at(ui, place, width, rows, lambda index: self._press(self.left_out[index]), (0, 0, *ui.size))
 
     def _menu_states(self) -> dict[str, str]:
         state = self._state
