@@ -170,6 +170,16 @@ class SoftnessReading:
         meter = self._meter(self._subjects[name])
         return {} if meter is None or meter.curve is None else word_pairs(meter, body)
 
+    def word_of(self, material: int | None) -> str:
+        """The word for the body that stands for a material, as the row has it; "" where its sag is not known."""
+        name = self.body_of(material)
+        if name is None:
+            return ""
+        found = self._reading(self._subjects[name], present_coefficients(self.playback.session.world))
+        if found is None or found.sag is None or math.isnan(found.sag):
+            return ""
+        return word_for(found.sag, found.is_rigid)
+
     def subject_of(self, name: str) -> str:
         """The part of a body that the words are about, as a sentence has it: "the girder's end"."""
         return subject_words(name, self._meters.of(self.playback.session.world, self._subjects[name]).body.support)
