@@ -7,7 +7,7 @@ from typing import Any
 
 GOOD: dict[str, Any] = {
     "format": "spring-sandbox/level",
-    "version": 3,
+    "version": 4,
     "name": "Good",
     "description": "Every kind of thing once.",
     "tags": ["demo"],

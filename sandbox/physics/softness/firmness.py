@@ -43,6 +43,8 @@ LARGEST_READ = 2_000
 FREQUENCIES, MOST_RATIO, WOBBLE_DIGITS = (0.01, 1_000.0), 1.0, 6
 # Forms whose lowest mode is kept; those of a level, edited one by one, need no more.
 KEPT = 256
+# Forms whose sags are kept, each with a run that may go on.
+KEPT_FORMS = 64
 
 _REASONS = {NO_HEIGHT: FLAT, OUT_OF_REACH: BEYOND_REACH}
 _kept: dict[bytes, float] = {}
@@ -125,7 +127,7 @@ def standing_form(shape: StiffForm, gravity: tuple[float, float]) -> StandingFor
     strength = design_gravity(*gravity)
     key = _key_of(shape), (gravity[0] / strength, gravity[1] / strength)
     if key not in _standing:
-        while len(_standing) >= KEPT:
+        while len(_standing) >= KEPT_FORMS:
             del _standing[next(iter(_standing))]
         _standing[key] = StandingForm(shape, gravity, lowest_mode_of(shape))
     return _standing[key]

@@ -33,6 +33,8 @@ TOUGH = 1.0 - 1e-4
 # which end once one changes the sag by no more than this share of itself; and the sag after which there are no more.
 FIRST, MOST_AT_FIRST = 5e-4, 5e-3
 HEAVIER, TICKS, AT_REST, LAST = 1.5, 6, 1e-3, 0.45
+# Forms of more particles, whose ticks take long, go on in fewer loads.
+LARGE, MUCH_HEAVIER = 2_000, 4.0
 # What is this near to the floor is on it, and how far away what holds it there is fixed, as shares of its length.
 ON_FLOOR, FAR = 1e-6, 10.0
 BOTH, UP = np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([[0.0, 1.0]])
@@ -96,8 +98,9 @@ class StandingForm:
         if self._is_new and self.length > 0.0 and self._square > 0.0:
             self._begin()
         self._is_new = False
+        heavier = HEAVIER if len(self._form) <= LARGE else MUCH_HEAVIER
         while self._world is not None and not is_known():
-            self._rest(HEAVIER * self._loads[-1] * self._square * self.length)
+            self._rest(heavier * self._loads[-1] * self._square * self.length)
 
     def _begin(self) -> None:
         """Find the first load; a form that tips over or falls apart has none."""
