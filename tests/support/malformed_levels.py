@@ -161,7 +161,7 @@ REQUIRED = [
 KITE: dict[str, Any] = {"type": "jelly", "id": "kite", "shape": {"polygon": [[0, 0], [2, 0], [0, 2]]}}
 FITTED = KITE | {"mesh": "fitted", "spacing": 0.25}
 OUTSIDE = [
-    ("version", 4),
+    ("version", 5),
     ("version", 0),
     ("format", "tiled/map"),
     ("name", ""),
