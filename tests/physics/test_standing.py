@@ -1,5 +1,10 @@
 """The sag of a definition is what the body shows in a run, standing alone on a floor: slabs, discs and beds."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from sandbox.level.document.canonical import level_text
@@ -146,3 +151,24 @@ def test_what_is_left_of_a_damaged_level_has_the_firmness_that_it_had(version):
     text = text.replace(b'"version": 4', f'"version": {version}'.encode())
     left, faults = salvage(text.replace(b'"bodies"', b'"particles": [7], "bodies"'), "bad.json")
     assert faults and left.bodies == parse_level(text, "good.json").bodies
+
+
+def test_the_same_bits_are_found_by_compiled_and_by_interpreted_kernels():
+    script = (
+        "from tests.support.wobbles import firm_world\n"
+        "from sandbox.physics.softness.firmness import lowest_mode_of\n"
+        "from sandbox.physics.softness.standing import StandingForm\n"
+        "for body in ({'shape': {'box': [1, 0.5]}}, {'shape': {'circle': 0.5}, 'mesh': 'fitted'}):\n"
+        "    shape = firm_world({'hz': 1.0}, spacing=0.25, **body).forms[0].shape\n"
+        "    form = StandingForm(shape, (0.3, -9.0), lowest_mode_of(shape))\n"
+        "    print([form.constant(sag).hex() for sag in (0.003, 0.1, 0.25)])\n"
+    )
+    root = Path(__file__).resolve().parents[2]
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", script], cwd=root, capture_output=True, check=True, text=True,
+            env={**os.environ, "PYTHONPATH": str(root), "SANDBOX_KERNELS": way},
+        ).stdout
+        for way in ("library", "generic", "interpreted")
+    }  # fmt: skip
+    assert len(found) == 1
