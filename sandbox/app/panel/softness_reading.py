@@ -33,6 +33,8 @@ from sandbox.physics.solvers import SOLVERS
 ALL_BODIES = "All bodies"
 TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
 MEASURING = "Measuring how far it sags ..."
+# Particles of the largest body whose sags, where it stands, are worked out within a frame.
+PROMPT = 300
 # Significant digits of a sag, and of a wobble.
 DIGITS, SWING_DIGITS = 2, 3
 
@@ -159,7 +161,7 @@ class SoftnessReading:
         world, subject = self.playback.session.world, self._subjects[name]
         meter = self._meter(subject)
         curve = None if meter is None else meter.curve
-        if curve is None and subject.slot is None:
+        if curve is None and (subject.slot is None or len(subject.body.shape.mass) > PROMPT):
             return None
         # A net moves as its springs do.
         motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
