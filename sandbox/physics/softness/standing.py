@@ -43,7 +43,7 @@ BOTH, UP = np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([[0.0, 1.0]])
 class StandingForm:
     """The sags of a form, of whose height, or of whose length on two ends, `length` [m], they are a share.
 
-    gravity [m/s^2]: its direction. lowest_mode: of the form, above 0. Loads are g / (F^2 length), F^2 = k / m of the
+    length: 0 of a form that has none. gravity [m/s^2]: its direction. lowest_mode: of the form, above 0. Loads are g / (F^2 length), F^2 = k / m of the
     slowest wobble as in reach.py.
     """
 
@@ -52,7 +52,8 @@ class StandingForm:
         low, high = points.min(axis=0), points.max(axis=0)
         self._shape, self._form = shape, points - np.array([0.5 * (low[0] + high[0]), low[1]])
         self._on_ends = lies_on_ends(shape, points)
-        self.length = float((high - low)[0 if self._on_ends else 1])
+        # A link alone has nothing that sags.
+        self.length = float((high - low)[0 if self._on_ends else 1]) if len(points) > 2 else 0.0
         self._settings = WorldSettings(gravity=(0.0, -1.0), solver="direct")
         rate = self._settings.tick_rate / TURN
         # F^2 of the wobble of the run [1/s^2].
