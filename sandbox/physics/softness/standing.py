@@ -43,8 +43,8 @@ BOTH, UP = np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([[0.0, 1.0]])
 class StandingForm:
     """The sags of a form, of whose height, or of whose length on two ends, `length` [m], they are a share.
 
-    length: 0 of a form that has none. gravity [m/s^2]: its direction. lowest_mode: of the form, above 0. Loads are g / (F^2 length), F^2 = k / m of the
-    slowest wobble as in reach.py.
+    length: 0 of a form that has none. gravity [m/s^2]: its direction. lowest_mode: of the form. Loads are
+    g / (F^2 length), F^2 = k / m of the slowest wobble as in reach.py.
     """
 
     def __init__(self, shape: StiffForm, gravity: tuple[float, float], lowest_mode: float) -> None:
