@@ -21,7 +21,7 @@ from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.analysis.stability import BOUND, constraint_count, effective_count
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, of_body
-from sandbox.physics.keeping.equipment import design_gravity, height_of
+from sandbox.physics.keeping.equipment import design_gravity
 from sandbox.physics.marks import LAW_HAND, LAW_HOOKE
 from sandbox.physics.softness.firmness import lowest_mode_of
 from sandbox.physics.solvers import SOLVERS
@@ -76,7 +76,7 @@ class ChosenBody:
 
     springs (k,) = slots that do something, all of the same Cs and Cd or Hooke's k and c. stiffness, damping: Cs and Cd
     of a tick [1]. tick [s]. n_eff: see stability.py. form: place in the world's `forms`, None; mode: eigenvalue of its
-    slowest wobble, 0 where its form is not stiff; height [m] of that form. weight [N] of its free particles; least_mass
+    slowest wobble, 0 where its form is not stiff. weight [N] of its free particles; least_mass
     [kg] and least_length [m]: of the spring of the least reduced mass. gravity [m/s^2].
 
     restoring = k h^2 / m_r and decay = c h / m_r, of a substep of h [s] as the level's solver has them: k is the spring
@@ -98,7 +98,6 @@ class ChosenBody:
     others: int
     form: int | None
     mode: float
-    height: float
     weight: float
     least_mass: float
     least_length: float
@@ -202,7 +201,6 @@ def _described(world: World, name: str, slots: NDArray[np.int64]) -> ChosenBody:
     return ChosenBody(
         world, name, world.material_names[world.material[first]], springs, reduced, stiffness, damping, hooke, tick, h,
         float(counts.max()), len(counts) > len(slots), others, form, mode,
-        0.0 if form is None else height_of(world.forms[form].shape, *settings.gravity),
         float(np.sum(world.mass[free])) * gravity, float(reduced[least]), float(world.rest_length[springs[least]]),
         gravity, eigenvalue, restoring, decay,
     )  # fmt: skip

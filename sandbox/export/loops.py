@@ -16,6 +16,7 @@ from sandbox.export.numbers import exact, floored
 from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.equation import direction, frequency_from_coefficients, reduced_mass, spring_impulse
 from sandbox.physics.softness.body_motion import BodyMotion
+from sandbox.physics.softness.firmness import standing_form
 
 Pair = tuple[float, float]
 
@@ -110,7 +111,9 @@ def _loop_pair(body: ChosenBody, stiffness: float, damping: float, h: float) -> 
         body.weight * h * h / (stiffness * body.least_mass * body.least_length) if stiffness > 0.0 else float("inf")
     )
     if body.mode > 0.0:
-        view = BodyMotion(body.mode, body.height, body.gravity, h, 1, "single_pass", 1)
+        assert body.form is not None
+        form = standing_form(body.world.forms[body.form].shape, body.world.settings.gravity)
+        view = BodyMotion(body.mode, form, body.gravity, h, 1, "single_pass", 1)
         sag, motion = view.sag(np.array([stiffness]), np.array([damping])), view.motion(stiffness, damping)
         assert sag is not None
         return LoopPair(stiffness, damping, motion.hz, motion.ratio, float(sag[0]), stretch)

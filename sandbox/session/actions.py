@@ -12,7 +12,8 @@ from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.commands.command import RULE
-from sandbox.physics.softness.kernels.reach import BY_SAG
+from sandbox.physics.keeping.equipment import Firmness
+from sandbox.physics.softness.firmness import softening
 from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import stars_of
@@ -54,10 +55,8 @@ def softening_of(action: ActionDef, level: Level, world: LevelWorld) -> dict[str
     """
     body = next(place for place, form in enumerate(world.forms) if form.name == action.body)
     during = round(action.during * level.settings.tick_rate)
-    return {
-        "body": body, "whole": True, "way": BY_SAG, "value": action.sag, "second": 0.0,
-        "gravity": level.settings.gravity, "duration": during,
-    }  # fmt: skip
+    asked = softening(world, body, Firmness(sag=action.sag), level.settings.gravity)
+    return asked | {"duration": during}
 
 
 def record_of(action: ActionDef, world: LevelWorld, rate: int) -> dict[str, Any] | None:

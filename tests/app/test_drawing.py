@@ -264,8 +264,8 @@ def test_a_jelly_and_a_balloon_are_filled_and_a_crushed_jelly_is_bluer():
         JellyDef(type="jelly", id="cube", shape=BoxShape(box=(2.0, 2.0)), spacing=1.0),
         RingDef(type="ring", id="balloon", radius=1.0, segments=16, position=(4.0, 0.0)),
     )
-    level = Level(format="spring-sandbox/level", version=3, name="Filled", bodies=bodies)
-    empty = Level(format="spring-sandbox/level", version=3, name="Empty")
+    level = Level(format="spring-sandbox/level", version=4, name="Filled", bodies=bodies)
+    empty = Level(format="spring-sandbox/level", version=4, name="Empty")
     camera = Camera((2.0, 0.0), 50.0, (0, 0, 400, 200))
 
     def colour_at(level, world, place):
@@ -295,7 +295,7 @@ def filled_share(shape, spacing, box, mesh="grid"):
     jelly = JellyDef(type="jelly", id="one", shape=shape, spacing=spacing, mesh=mesh)
     camera, pictures = Camera((0.0, 0.0), 100.0, (0, 0, 400, 400)), []
     for bodies in ((jelly,), ()):
-        level = Level(format="spring-sandbox/level", version=3, name="One", bodies=bodies)
+        level = Level(format="spring-sandbox/level", version=4, name="One", bodies=bodies)
         surface = pygame.Surface((400, 400), 0, 32)
         snapshot = take(build_world(level))
         Renderer(level=level).draw(surface, camera, snapshot, snapshot, 1.0)

@@ -44,7 +44,7 @@ def jelly_level(
     shape = shape or BoxShape(box=(SPACING * (columns - 1), SPACING * (rows - 1)))
     body = JellyDef(type="jelly", id="box", shape=shape, spacing=SPACING, material="jelly", area=area)
     return Level(
-        format="spring-sandbox/level", version=3, name="Jelly", bodies=(body,),
+        format="spring-sandbox/level", version=4, name="Jelly", bodies=(body,),
         settings=Settings(gravity=(0.0, 0.0), tick_rate=RATE, **settings),
         materials={"jelly": NissenMaterial(stiffness=stiffness, damping=damping)},
     )  # fmt: skip

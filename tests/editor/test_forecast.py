@@ -29,7 +29,7 @@ STEEL = NissenMaterial(stiffness=1.0, damping=1.0)
 
 
 def level_of(**parts):
-    return Level(format="spring-sandbox/level", version=3, name="Forecast", materials={"steel": STEEL}, **parts)
+    return Level(format="spring-sandbox/level", version=4, name="Forecast", materials={"steel": STEEL}, **parts)
 
 
 def finished(level):
@@ -115,7 +115,7 @@ def test_what_blows_up_is_said_not_to_come_to_rest():
     particles = (ParticleDef(id="a", pinned=True), ParticleDef(id="b", position=(1.0, 0.0)))
     level = Level(
         format="spring-sandbox/level",
-        version=3,
+        version=4,
         name="Blows up",
         settings=Settings(solver="single_pass"),
         materials={"mistuned": HookeMaterial(law="hooke", k=1e5)},

@@ -43,7 +43,7 @@ LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
 
 
 def level_of(**parts):
-    return Level(format="spring-sandbox/level", version=3, name="Lint", **parts)
+    return Level(format="spring-sandbox/level", version=4, name="Lint", **parts)
 
 
 def found(level):
@@ -512,7 +512,7 @@ def test_a_column_of_jelly_boxes_that_lie_on_one_another_is_found_as_one():
 def test_what_is_over_water_does_not_fall_for_ever_and_water_in_water_is_told():
     ball = {"id": "ball", "position": [0, 2], "mass": 0.1, "radius": 0.2}
     pools = [pool((-5, -5, 5, 0)), pool((3, -5, 9, -1)) | {"id": "other"}, pool((9, -5, 12, 0)) | {"id": "beside"}]
-    head = {"format": "spring-sandbox/level", "version": 3, "name": "w", "particles": [ball]}
+    head = {"format": "spring-sandbox/level", "version": 4, "name": "w", "particles": [ball]}
     for zones, lines in (
         ([], ["ball"]),
         (pools[:1], []),

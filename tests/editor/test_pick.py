@@ -24,7 +24,7 @@ def scene():
     """A cube of jelly about the origin, a rope right of it, a ball with a small particle on it, and a spring."""
     level = Level(
         format="spring-sandbox/level",
-        version=3,
+        version=4,
         name="Picking",
         bodies=(
             JellyDef(type="jelly", id="cube", shape=BoxShape(box=(2.0, 2.0)), spacing=1.0),
@@ -52,7 +52,7 @@ def test_of_discs_that_overlap_the_one_with_the_nearest_centre_is_hit(scene):
 
 def test_beside_all_discs_the_one_with_the_nearest_border_is_hit():
     particles = ParticleDef(id="large", radius=0.5), ParticleDef(id="small", position=(1.0, 0.0))
-    scene = make_scene(Level(format="spring-sandbox/level", version=3, name="Beside", particles=particles))
+    scene = make_scene(Level(format="spring-sandbox/level", version=4, name="Beside", particles=particles))
     assert particle_at(scene, (0.6, 0.0), 0.4) == 0
     assert particle_at(scene, (0.9, 0.0), 0.4) == 1
 
@@ -61,14 +61,14 @@ def test_a_body_is_open_where_no_spring_closes_it():
     corners = [(0.0, 3.0), (0.0, 0.0), (3.0, 0.0), (3.0, 3.0)]
     for turns in range(4):
         cup = RopeDef(type="rope", id="cup", start=(0.0, 0.0), end=(3.0, 0.0), segments=3, pose=tuple(corners))
-        scene = make_scene(Level(format="spring-sandbox/level", version=3, name="Cup", bodies=(cup,)))
+        scene = make_scene(Level(format="spring-sandbox/level", version=4, name="Cup", bodies=(cup,)))
         assert item_at(scene, (1.5, 1.4), 0.1) is None, turns
         corners = [(3.0 - y, x) for x, y in corners]
 
 
 def test_of_particles_in_one_place_the_one_drawn_last_is_hit():
     particles = tuple(ParticleDef(id=name) for name in ("under", "over"))
-    level = Level(format="spring-sandbox/level", version=3, name="Stack", particles=particles)
+    level = Level(format="spring-sandbox/level", version=4, name="Stack", particles=particles)
     assert particle_at(make_scene(level), (0.0, 0.0), 0.0) == 1
 
 

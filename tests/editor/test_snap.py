@@ -17,7 +17,7 @@ def scene():
     return make_scene(
         Level(
             format="spring-sandbox/level",
-            version=3,
+            version=4,
             name="Snapping",
             bodies=(RopeDef(type="rope", id="rope", start=(0.0, 0.0), end=(1.0, 0.0), segments=10),),
             particles=(ParticleDef(id="ball", position=(0.5, 3.0)),),

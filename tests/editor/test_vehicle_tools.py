@@ -142,7 +142,7 @@ def test_a_chassis_stands_on_its_wheels_and_its_suspension_gives_and_comes_back(
     assert 0.5 * free < ride(heavy) < ride(light) - 0.01
     for world in (light, heavy):
         # It may roll on by itself: tops of wheels go twice as fast.
-        assert np.abs(world.velocity).max() < 0.08
+        assert np.abs(world.velocity).max() < 0.1
         assert world.position[world.particle_slot("rear axle"), 1] > 0.4
 
 

@@ -114,7 +114,7 @@ def test_outlines_go_round_what_is_solid_counter_clockwise_and_along_ropes_in_or
 
 def test_extras_looks_terrain_walls_and_hydraulics_come_along():
     level = {
-        "format": "spring-sandbox/level", "version": 3, "name": "all", "settings": {"solver": "direct"},
+        "format": "spring-sandbox/level", "version": 4, "name": "all", "settings": {"solver": "direct"},
         "contacts": {"friction": 0.3, "restitution": 0.1}, "walls": {"box": [-5, -5, 5, 5]}, "extras": {"by": "me"},
         "terrain": [
             {"id": "hill", "polygon": [[0, 0], [1, 0], [0, 1]], "friction": 0.7, "belt": 2, "extras": {"soil": 1}},
@@ -240,7 +240,7 @@ def test_a_picture_is_drawn_by_a_renderer_with_the_ground_below_and_the_sky_abov
 
 
 def test_a_level_of_nothing_is_exported_as_well():
-    level = parse_level(b'{"format": "spring-sandbox/level", "version": 3, "name": "<&\\">"}', "nothing")
+    level = parse_level(b'{"format": "spring-sandbox/level", "version": 4, "name": "<&\\">"}', "nothing")
     made = flat(level)
     assert FlatLevel.model_validate_json(flat_text(made)) == made
     assert ElementTree.fromstring(svg(made)).find("{*}title").text == '<&">'

@@ -20,7 +20,7 @@ from tests.support.malformed_levels import GOOD, encoded
 
 
 def level_of(*bodies, **keys):
-    whole = {"format": "spring-sandbox/level", "version": 3, "name": "n", "bodies": list(bodies), **keys}
+    whole = {"format": "spring-sandbox/level", "version": 4, "name": "n", "bodies": list(bodies), **keys}
     return parse_level(encoded(whole), "x.json")
 
 

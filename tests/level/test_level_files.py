@@ -47,10 +47,10 @@ def test_what_is_saved_is_what_is_loaded(tmp_path):
 
 
 def test_the_canonical_form_leaves_defaults_out_but_for_the_solver():
-    minimal = parse_level(b'{"format": "spring-sandbox/level", "version": 3, "name": "n"}', "x")
+    minimal = parse_level(b'{"format": "spring-sandbox/level", "version": 4, "name": "n"}', "x")
     assert level_data(minimal) == {
         "format": "spring-sandbox/level",
-        "version": 3,
+        "version": 4,
         "name": "n",
         "settings": {"solver": minimal.settings.solver},
     }
@@ -64,7 +64,7 @@ def test_the_canonical_form_gives_a_body_a_block_and_a_spring_a_line():
                 "particles": [{"mass": 2, "id": "p"}],
                 "bodies": [{"segments": 1, "end": [1, 0], "start": [0, 0], "id": "r", "type": "rope", "angle": 0}],
                 "name": "n",
-                "version": 3,
+                "version": 4,
                 "format": "spring-sandbox/level",
             }
         ).replace(b', "angle": 0', b""),
@@ -73,7 +73,7 @@ def test_the_canonical_form_gives_a_body_a_block_and_a_spring_a_line():
     assert level_text(level) == (
         "{\n"
         '  "format": "spring-sandbox/level",\n'
-        '  "version": 3,\n'
+        '  "version": 4,\n'
         '  "name": "n",\n'
         f'  "settings": {{"solver": "{level.settings.solver}"}},\n'
         '  "bodies": [\n'
@@ -271,7 +271,7 @@ def is_long(girder):
 def changed_bodies(draw, name, material):
     """Any body, perhaps with pins, cuts and a pose."""
     body = draw(bodies(name, material))
-    head = {"format": "spring-sandbox/level", "version": 3, "name": "n", "materials": {material: {}}}
+    head = {"format": "spring-sandbox/level", "version": 4, "name": "n", "materials": {material: {}}}
     particles, springs = expansion(parse_level(encoded({**head, "bodies": [body]}), "x.json").bodies[0]).form_count
     changes = some(
         {},

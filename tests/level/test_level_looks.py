@@ -14,7 +14,7 @@ from sandbox.physics.snapshot import state_hash
 
 LEVEL = {
     "format": "spring-sandbox/level",
-    "version": 3,
+    "version": 4,
     "name": "Looks",
     "settings": {"solver": "single_pass"},
     "look": {"theme": "light", "ground": {"left glass": "glass"}, "faces": True},

@@ -162,7 +162,7 @@ def test_a_flood_of_keys_does_not_make_present_keys_missing():
             ["rope.3", "rope.4"],
             'bodies.0: the welds make one particle of both ends of "rope:3"; take a weld out or cut 3',
         ),
-        ("version", 4, "version: 4: made by a newer program; this program reads version 3 of the format, update it"),
+        ("version", 5, "version: 5: made by a newer program; this program reads version 4 of the format, update it"),
         ("format", "map", 'format: "map" is not "spring-sandbox/level"; this is no level'),
     ],
 )

@@ -180,7 +180,7 @@ def test_bytes_that_are_no_text_cost_only_themselves():
         (encoded({**GOOD, "format": "map"}), 'x.json: format: "map" is not "spring-sandbox/level"; this is no level'),
         (
             encoded({**GOOD, "version": 99}),
-            "x.json: version: 99: made by a newer program; this program reads version 3 of the format, update it",
+            "x.json: version: 99: made by a newer program; this program reads version 4 of the format, update it",
         ),
         (b"[" * 100_000, "x.json: line 1: lists and objects are nested"),
     ],

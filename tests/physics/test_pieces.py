@@ -3,6 +3,7 @@
 import copy
 import json
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_body
 from sandbox.physics.geometry.segment import signed_area
+from sandbox.physics.keeping.equipment import height_of
 from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import state_hash
@@ -276,7 +278,9 @@ def test_each_piece_is_made_firm_by_its_name_alone_and_undo_keeps_to_what_it_was
         session.apply_pending()
     assert np.all(world.stiffness[smaller.springs] == 1.0)
     for body, sag in ((larger, 0.25), (other, 0.1)):
+        # The command takes a sag for that of a square as high.
         reach = FirmnessRange.of(body.shape, world.settings.gravity, world.settings.tick_rate)
+        reach = replace(reach, form=None, height=height_of(body.shape, *world.settings.gravity))
         mode = float(world.lowest_mode[body.springs[0]])
         pair = of_body(float(world.stiffness[body.springs[0]]), float(world.damping[body.springs[0]]), mode)
         assert reach.reading(*pair)[0] == pytest.approx(sag, rel=0.01)

@@ -287,7 +287,7 @@ def part_of_height(stiffness, damping, *, size, cells, angle=0.0):
         "position": (0.0, middle), "angle": angle, "material": "soft",
     }  # fmt: skip
     world = build_world(Level.model_validate({
-        "format": "spring-sandbox/level", "version": 3, "name": "bounce", "bodies": (box,),
+        "format": "spring-sandbox/level", "version": 4, "name": "bounce", "bodies": (box,),
         "materials": {"soft": {"stiffness": stiffness, "damping": damping}},
         "contacts": {"friction": 0.0, "restitution": 1.0},
         "terrain": ({"id": "ground", "polyline": ((-50.0, 0.0), (50.0, 0.0))},),

@@ -64,7 +64,7 @@ def level(deed: str, shape: str, coefficients: tuple[float, float], **settings: 
         )  # fmt: skip
     ground = HILLS if deed == "thrown" else [[-300, 0], [300, 0]]
     given = {
-        "format": "spring-sandbox/level", "version": 3, "name": deed, "settings": settings, "bodies": bodies,
+        "format": "spring-sandbox/level", "version": 4, "name": deed, "settings": settings, "bodies": bodies,
         "contacts": {"friction": 0.5}, "terrain": [{"id": "ground", "polyline": ground}],
         "materials": {
             "m": dict(zip(("stiffness", "damping"), coefficients, strict=True)),
@@ -83,7 +83,7 @@ def _alone(shape: dict[str, Any], stiffness: float, damping: float) -> World:
     """A coarse jelly without weight."""
     body = {"type": "jelly", "id": "j", "shape": shape, "spacing": 0.25, "material": "m"}
     given = {
-        "format": "spring-sandbox/level", "version": 3, "name": "alone", "settings": {"gravity": (0.0, 0.0)},
+        "format": "spring-sandbox/level", "version": 4, "name": "alone", "settings": {"gravity": (0.0, 0.0)},
         "bodies": [body], "contacts": {}, "materials": {"m": {"stiffness": stiffness, "damping": damping}},
     }  # fmt: skip
     return build_world(Level.model_validate_json(json.dumps(given)))

@@ -21,7 +21,7 @@ HELD_TICKS = 45
 def world_of(*bodies: dict, particles: tuple = (), terrain: tuple = (), **settings) -> World:
     """A world of bodies as a level has them; where there is terrain, things touch."""
     level = {
-        "format": "spring-sandbox/level", "version": 3, "name": "held", "settings": settings, "bodies": bodies,
+        "format": "spring-sandbox/level", "version": 4, "name": "held", "settings": settings, "bodies": bodies,
         "particles": particles, "terrain": terrain, "materials": {"rigid": {"stiffness": 1.0, "damping": 1.0}},
     }  # fmt: skip
     return build_world(Level.model_validate(level))

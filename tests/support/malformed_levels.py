@@ -7,7 +7,7 @@ from typing import Any
 
 GOOD: dict[str, Any] = {
     "format": "spring-sandbox/level",
-    "version": 3,
+    "version": 4,
     "name": "Good",
     "description": "Every kind of thing once.",
     "tags": ["demo"],
@@ -161,7 +161,7 @@ REQUIRED = [
 KITE: dict[str, Any] = {"type": "jelly", "id": "kite", "shape": {"polygon": [[0, 0], [2, 0], [0, 2]]}}
 FITTED = KITE | {"mesh": "fitted", "spacing": 0.25}
 OUTSIDE = [
-    ("version", 4),
+    ("version", 5),
     ("version", 0),
     ("format", "tiled/map"),
     ("name", ""),

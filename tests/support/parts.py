@@ -71,7 +71,7 @@ def placed_cart(x, y):
 def room(solver="direct", *bodies, **changes):
     """A level with a floor, walls and these bodies."""
     level = {
-        "format": "spring-sandbox/level", "version": 3, "name": "room", "contacts": {},
+        "format": "spring-sandbox/level", "version": 4, "name": "room", "contacts": {},
         "settings": {"solver": solver}, "walls": {"box": [-4, 0, 4, 6]}, "bodies": list(bodies),
     } | changes  # fmt: skip
     return parse_level(json.dumps(level).encode(), "room")

@@ -25,7 +25,7 @@ if hasattr(os, "fork"):
 def named(name, count=3):
     """A level of that name with loose particles."""
     particles = tuple(ParticleDef(id=f"p{number}", position=(number / 7, 0.0)) for number in range(count))
-    return Level(format="spring-sandbox/level", version=3, name=name, particles=particles)
+    return Level(format="spring-sandbox/level", version=4, name=name, particles=particles)
 
 
 class Child:

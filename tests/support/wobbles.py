@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.format.limits import VERSION
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.arrays import Floats
@@ -21,7 +22,7 @@ BENT = 1e-5
 def firm_level(firmness: Any, settings: dict[str, Any] | None = None, floor: bool = False, **body: Any) -> bytes:
     """A level of one body, a jelly unless it says otherwise; in the air without gravity, or with a floor at 0."""
     made = {"type": "jelly", "id": "body", "firmness": firmness, **body}
-    level: dict[str, Any] = {"format": "spring-sandbox/level", "version": 3, "name": "firm", "bodies": [made]}
+    level: dict[str, Any] = {"format": "spring-sandbox/level", "version": VERSION, "name": "firm", "bodies": [made]}
     level["settings"] = {"solver": "direct", **({} if floor else {"gravity": [0, 0]}), **(settings or {})}
     if floor:
         level["contacts"] = {"friction": 0.5}

@@ -21,7 +21,7 @@ def row_of_particles(particle_count=12):
         Level.model_validate(
             {
                 "format": "spring-sandbox/level",
-                "version": 3,
+                "version": 4,
                 "name": "row",
                 "settings": {"solver": "iterative", "gravity": (0.0, 0.0)},
                 "bodies": (

@@ -35,7 +35,8 @@ Mask = NDArray[np.bool_]
 class PadState(NamedTuple):
     """The state of the pad: Cs and Cd, whether springs differ in them, and whether there are any.
 
-    own: what the level itself has; scale: of both axes; body: that of which words are, and subject: what of it sags.
+    own: what the level itself has; scale: of both axes; body: that of which words are, subject: what of it sags, and
+    word: what it is called as it is, "" where that is not known.
     """
 
     stiffness: float
@@ -46,6 +47,7 @@ class PadState(NamedTuple):
     scale: CoefficientScale = PLAIN
     body: BodyMotion | None = None
     subject: str = ""
+    word: str = ""
 
 
 class CoefficientPad(Draggable):
@@ -207,8 +209,9 @@ class CoefficientPad(Draggable):
         pygame.draw.aacircle(surface, SURFACE, (x, y), px(KNOB) + max(1, px(1.5)))
         pygame.draw.aacircle(surface, TEXT, (x, y), px(KNOB))
         pygame.draw.aacircle(surface, SURFACE if self.state.is_mixed else self._knob_colour(), (x, y), px(KNOB - 3))
-        if self._name:
-            self._paint_name(surface, self._name, (x, y), TEXT)
+        name = ", ".join(filter(None, (self._name, self.state.word)))
+        if name:
+            self._paint_name(surface, name, (x, y), TEXT)
         return surface
 
     def _paint_name(self, surface: pygame.Surface, name: str, at: tuple[float, float], colour: Colour) -> None:
@@ -381,7 +384,7 @@ class CoefficientPad(Draggable):
         if not self.state.enabled:
             return
         for word, (across, up) in sags.places.items():
-            picture = self.ui.font(WORD_SIZE, True).render(word, True, TEXT)
+            picture = self.ui.font(WORD_SIZE).render(word, True, MUTED)
             place = picture.get_rect(center=(across * width, (1.0 - up) * height))
             pixels.blit(picture, place.clamp(pixels.get_rect().inflate(-4, -2)))
 

@@ -229,4 +229,4 @@ class FirmnessRows(SoftnessReading):
         if nearest != target:
             self._say(f"{subject.name}: {target} is not possible here. It has the nearest value now: {nearest}.")
         assert subject.slot is not None
-        self.playback.submit(SetFirmness(subject.slot, **asdict(nearest)), gesture)
+        self.playback.submit(SetFirmness(subject.slot, **asdict(reach.as_wobble(nearest))), gesture)

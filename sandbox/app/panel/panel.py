@@ -246,8 +246,8 @@ class Panel(PropertyOwner):
             return
         self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
-        curve = self.firmness.curve_of(self.material)
-        key = (settings, self.material, self.firmness.body, curve, *(array.tobytes() for array in inputs))
+        curve, word = self.firmness.curve_of(self.material), self.firmness.word_of(self.material)
+        key = (settings, self.material, self.firmness.body, curve, word, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
@@ -339,8 +339,9 @@ class Panel(PropertyOwner):
         pair = float(np.median(stiffness)), float(np.median(damping))
         name = None if self._body is None else self.firmness.body_of(self.material)
         subject = "" if name is None else self.firmness.subject_of(name)
+        word = self.firmness.word_of(self.material) if subject else ""
         self.pad.show_state(
-            PadState(*pair, is_mixed, True, self._own(), self._scale, self._body, subject), self._zones
+            PadState(*pair, is_mixed, True, self._own(), self._scale, self._body, subject, word), self._zones
         )  # fmt: skip
 
     def _no_spring_note(self) -> str:

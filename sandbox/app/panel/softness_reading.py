@@ -33,6 +33,8 @@ from sandbox.physics.solvers import SOLVERS
 ALL_BODIES = "All bodies"
 TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
 MEASURING = "Measuring how far it sags ..."
+# Particles of the largest body whose sags, where it stands, are worked out within a frame.
+PROMPT = 300
 # Significant digits of a sag, and of a wobble.
 DIGITS, SWING_DIGITS = 2, 3
 
@@ -161,7 +163,7 @@ class SoftnessReading:
         world, subject = self.playback.session.world, self._subjects[name]
         meter = self._meter(subject)
         curve = None if meter is None else meter.curve
-        if curve is None and subject.slot is None:
+        if curve is None and (subject.slot is None or len(subject.body.shape.mass) > PROMPT):
             return None
         # A net moves as its springs do.
         motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
@@ -171,6 +173,16 @@ class SoftnessReading:
         """Cs and Cd of each word for a body, where runs have told."""
         meter = self._meter(self._subjects[name])
         return {} if meter is None or meter.curve is None else word_pairs(meter, body)
+
+    def word_of(self, material: int | None) -> str:
+        """The word for the body that stands for a material, as the row has it; "" where its sag is not known."""
+        name = self.body_of(material)
+        if name is None:
+            return ""
+        found = self._reading(self._subjects[name], present_coefficients(self.playback.session.world))
+        if found is None or found.sag is None or math.isnan(found.sag):
+            return ""
+        return word_for(found.sag, found.is_rigid)
 
     def subject_of(self, name: str) -> str:
         """The part of a body that the words are about, as a sentence has it: "the girder's end"."""

@@ -141,7 +141,7 @@ def _softened(world: World, form: int, word: str) -> list[Command]:
     reach = FirmnessRange.of(firm_bodies(world)[form].shape, settings.gravity, settings.tick_rate)
     if reach.lowest_mode == 0.0:
         raise EditError("its form is not stiff without pins: it has no softness of its own")
-    return [SetFirmness(form, **asdict(reach.nearest(Firmness(sag=WORDS[word]))))]
+    return [SetFirmness(form, **asdict(reach.as_wobble(reach.nearest(Firmness(sag=WORDS[word])))))]
 
 
 def _weighed(particle: int, factor: float) -> list[Command]:

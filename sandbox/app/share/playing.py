@@ -32,8 +32,10 @@ from sandbox.level.rules.rule import has_clock
 from sandbox.page.page import page_text, toy_content
 from sandbox.page.start import adding, start_of
 from sandbox.physics import jit
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.snapshot import take
 from sandbox.physics.softness.body_motion import FLAT, BodyMotion
+from sandbox.physics.softness.firmness import LARGEST_READ, FirmnessRange, OutOfReach
 from sandbox.physics.softness.firmness import WORDS as SAGS
 from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeters, measured_bodies
 from sandbox.physics.step import PHYSICS_VERSION
@@ -104,7 +106,7 @@ def playable_in_slices(
         "begin": begin,
     }
     _, low, _, high = scene["view"]
-    made = made_looks() | materials_for(world.settings.tick_rate)
+    made = made_looks() | materials_for(world.settings.tick_rate) | {"firmness": _firmness_of(world)}
     start, added = start_of(world), adding(world) | {"made": made} | parts_for(level, high - low)
     content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
     return Playable(level.name, level.description, content)
@@ -209,7 +211,20 @@ def materials_for(tick_rate: int) -> dict[str, Any]:
     words = {word: list(_at_rate(tick_rate, *pair).values()) for word, pair in USUAL.items()}
     firmest = {"stiffness": FIRM, "damping": FIRM}
     made = {"stuffs": materials, "firmest": firmest, "springy": at_rate(SPRINGY, tick_rate)}
-    return made | {"words": words, "sags": SAGS}
+    return made | {"words": words, "sags": {word: {"sag": sag} for word, sag in SAGS.items()}}
+
+
+def _firmness_of(world: World) -> list[dict[str, Any]]:
+    """What makes each body of a level's as soft as each word says, where that can be had: in commands' words."""
+    settings, found = world.settings, list[dict[str, Any]]()
+    for body in world.forms:
+        found.append({})
+        reach = FirmnessRange.of(body.shape, settings.gravity, settings.tick_rate)
+        for word, sag in SAGS.items() if jit.COMPILED and len(body.shape.mass) <= LARGEST_READ else ():
+            with contextlib.suppress(OutOfReach):
+                asked = asdict(reach.as_wobble(reach.nearest(Firmness(sag=sag))))
+                found[-1][word] = {name: value for name, value in asked.items() if value is not None}
+    return found
 
 
 def parts_for(level: Level, height: float) -> dict[str, Any]:

@@ -35,7 +35,7 @@ from sandbox.level.kinds.mesh import MeshDef
 from sandbox.level.kinds.wheel import WheelDef
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, group_bits
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.keeping.equipment import FirmBody, Firmness
+from sandbox.physics.keeping.equipment import FirmBody
 from sandbox.physics.softness.firmness import FirmnessRange
 from sandbox.physics.world import World
 
@@ -48,8 +48,6 @@ ADDED_PARTICLE, ADDED_SPRING = "+.", "+:"
 # What springs that commands added are of in the level: what gives way is drawn as a coil, what does not as a rod.
 COIL, ROD, FIRM = "added coil", "added rod", 0.85
 
-# Digits of the frequency and damping ratio that a body keeps.
-FIRMNESS_DIGITS = 6
 # Digits of how many times as heavy a body is; what differs by less is rounding.
 MASS_DIGITS = 9
 _ANOTHER = "what was played is not the level as it is now"
@@ -98,8 +96,7 @@ def as_firm(body: AnyBody, form: FirmBody, world: World, settings: Settings) -> 
             return body
     if mode == 0.0:
         return body if body.firmness is None else replaced(body, firmness=None)
-    hz, ratio = reach.reading(*of_body(*present, mode))[1:]
-    near = reach.nearest(Firmness(hz=significant(hz, FIRMNESS_DIGITS), ratio=significant(ratio, FIRMNESS_DIGITS)))
+    near = reach.wobble_of(*of_body(*present, mode))
     return replaced(body, firmness=FirmnessDef(hz=near.hz, ratio=near.ratio))
 
 

@@ -63,7 +63,7 @@ INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 
 FORMAT: Final = "spring-sandbox/level"
-VERSION = 3
+VERSION = 4
 DEFAULT_MATERIAL = "default"
 BODY_RADIUS = 0.05  # [m] of the drawn disc of a body's particles
 

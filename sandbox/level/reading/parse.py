@@ -38,6 +38,7 @@ from sandbox.level.format.limits import (
     ZONE_LIMIT,
 )
 from sandbox.level.plan.plan import keep_plan
+from sandbox.level.reading.old_sags import SAGS_STAND, with_old_sags
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, half_step, whole_of_parts
 
 # Beyond this many errors the library takes seconds to list them all, so they are looked for piece by piece.
@@ -66,14 +67,17 @@ def parse_level(data: bytes, source: str) -> Level:
     """Read a level from the bytes of a file; source names it in messages. Raises LevelError with all faults."""
     try:
         with _collector_paused(len(data) > _LARGE):
-            level = _parse(data, source)
+            level, version = _parse(data, source)
+            if version < SAGS_STAND:
+                level = with_old_sags(level, source)
             keep_plan(level, check_level(level, source))
     except (MemoryError, RecursionError):
         raise LevelError(source, [("", "is too large or too deep to be read")]) from None
     return level
 
 
-def _parse(data: bytes, source: str) -> Level:
+def _parse(data: bytes, source: str) -> tuple[Level, int]:
+    """A level, not yet checked as a whole, and the version that it was written in."""
     if len(data) > FILE_LIMIT:
         raise LevelError(source, [("", f"is larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
     data = data.removeprefix(codecs.BOM_UTF8)
@@ -101,7 +105,7 @@ def _parse(data: bytes, source: str) -> Level:
         if len(first) > FAULT_LIMIT:
             raise LevelError(source, first)
     try:
-        return Level.model_validate_json(data)
+        return Level.model_validate_json(data), before["version"]
     except ValidationError as error:
         raise LevelError(source, _library_faults(error, raw)) from None
 
@@ -374,6 +378,6 @@ def _same_in_parts(springs: dict[str, Any], parts: int) -> dict[str, Any]:
 
 
 # From a version to the next: the plain JSON of a level, not yet looked at, in; another object out, whose version is
-# set here. What version 2 says, version 3 says too. A file keeps its version until it is saved. Taking a step out makes
-# every file of its version unreadable.
-MIGRATIONS: dict[int, Migration] = {1: _springs_keep_their_constant, 2: dict}
+# set here. What version 2 says, version 3 says too; what that says of sags, old_sags.py reads. A file keeps its version
+# until it is saved. Taking a step out makes every file of its version unreadable.
+MIGRATIONS: dict[int, Migration] = {1: _springs_keep_their_constant, 2: dict, 3: dict}

@@ -24,6 +24,7 @@ from sandbox.level.format.foreign import scan
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
 from sandbox.level.plan.plan import Plan
+from sandbox.level.reading.old_sags import SAGS_STAND, with_old_sags
 from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS, migrated
 from sandbox.level.rules.rule import CounterDef, RuleDef
 
@@ -63,7 +64,11 @@ def salvage(data: bytes, source: str) -> tuple[Level | None, list[str]]:
     faults: list[Fault] = []
     try:
         raw = _read(data, faults)
-        level = None if raw is None else _Remains(raw, faults).level()
+        version = VERSION if raw is None else raw.get("version")
+        now = None if raw is None else _of_this_version(raw, faults)
+        level = None if now is None else _Remains(now, faults).level()
+        if level is not None and type(version) is int and version < SAGS_STAND:
+            level = with_old_sags(level, source)
     except (MemoryError, RecursionError):
         faults.append(("", "is too large or too deep to be read"))
         level = None
@@ -71,7 +76,7 @@ def salvage(data: bytes, source: str) -> tuple[Level | None, list[str]]:
 
 
 def _read(data: bytes, faults: list[Fault]) -> dict[str, Any] | None:
-    """A level's plain JSON, converted to this version, or None; why goes to `faults`."""
+    """A level's plain JSON as it was written, or None; why goes to `faults`."""
     data = data.removeprefix(_BYTE_ORDER_MARK)
     too_long = ("", f"is larger than {FILE_LIMIT // 1024 // 1024} MiB") if len(data) > FILE_LIMIT else None
     hostile = too_long or scan(data)
@@ -95,7 +100,7 @@ def _read(data: bytes, faults: list[Fault]) -> dict[str, Any] | None:
     elif raw.get("format") != FORMAT:
         faults.append(("format", f'{shown(raw.get("format"))} is not "{FORMAT}"; this is no level'))
         return None
-    return _of_this_version(raw, faults)
+    return raw
 
 
 def _without_repetitions(faults: list[Fault]) -> Callable[[list[tuple[str, Any]]], dict[str, Any]]:

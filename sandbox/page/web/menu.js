@@ -10,14 +10,16 @@ import { element } from './panel.js';
 const WEIGHTS = [['half as heavy', 0.5], ['twice as heavy', 2]];
 
 export class Menu {
-  /** What it says of things: Cs and Cd of materials and sags of bodies by words of firmness, and whether they touch.
+  /** What it says of things: by words of firmness Cs and Cd of materials, the level's own bodies, and those that joined it
+   * or were cut; and whether they touch.
    * @param {HTMLElement} box @param {Toy} toy */
   constructor(box, toy) {
-    const { touches, made: { words, sags } } = toy.level.about.adding;
+    const { touches, made: { words, sags, firmness } } = toy.level.about.adding;
     this.box = box;
     this.toy = toy;
     this.words = words;
     this.sags = sags;
+    this.firmness = firmness;
     this.touches = touches;
     addEventListener('pointerdown', ({ target }) => {
       if (target instanceof Node && !box.contains(target)) this.close();
@@ -66,7 +68,9 @@ export class Menu {
     };
     const isFixed = world.view('state.inverse_mass')[particle] === 0;
     const spring = this.#springAt(particle), form = spring < 0 ? -1 : world.formOf(spring);
-    const words = form >= 0 ? Object.entries(this.sags).map(([word, sag]) => button(word, () => this.#firm(form, word, sag)))
+    const isWhole = world.names.form[form] === toy.level.about.names.form[form];
+    const asked = isWhole ? { ...this.sags, ...this.firmness[form] } : this.sags;
+    const words = form >= 0 ? Object.entries(asked).map(([word, each]) => button(word, () => this.#firm(form, word, each)))
       : Object.entries(this.words).map(([word, [stiffness, damping]]) => button(word, () =>
         this.#soften(world.view('state.material')[spring], word, stiffness, damping)));
     const softness = spring < 0 ? [] : words;
@@ -92,8 +96,8 @@ export class Menu {
   }
 
   /** Make a body as soft as a word says, or as near to it as it can be.
-   * @type {(body: number, word: string, sag: number) => void} */
-  #firm(body, word, sag) {
+   * @type {(body: number, word: string, asked: { sag: number } | { hz: number, ratio: number }) => void} */
+  #firm(body, word, asked) {
     const { run, level: { ramp_ticks: duration }, world } = this.toy, gesture = run.newGesture();
     const name = world.names.form[body], says = () => this.toy.say(`${name} is ${word} now.`, 'done');
     /** @type {(text: string, refusal: Refusal) => void} */
@@ -101,7 +105,7 @@ export class Menu {
       if (nearest === undefined) this.toy.say(text);
       else if (run.submit({ type: 'set_firmness', body, sag: nearest, duration }, gesture, (why) => this.toy.say(why))) says();
     };
-    if (run.submit({ type: 'set_firmness', body, sag, duration }, gesture, refused)) says();
+    if (run.submit({ type: 'set_firmness', body, ...asked, duration }, gesture, refused)) says();
   }
 
   /** Make the body of a particle what a word says.

@@ -259,12 +259,21 @@ export class Panel {
     context.strokeStyle = style.getPropertyValue('--surface');
     context.lineWidth = 3;
     context.beginPath();
-    context.arc(across(scale.placeOf(pair[0])), up(scale.placeOf(pair[1])), 9, 0, 7);
+    const x = across(scale.placeOf(pair[0])), y = up(scale.placeOf(pair[1]));
+    context.arc(x, y, 9, 0, 7);
     context.stroke();
     context.fill();
+    if (!sags) return;
+    const word = this.#wordFor(chosen, pair);
+    context.fillStyle = style.getPropertyValue('--text');
+    context.font = 'bold 12px system-ui, sans-serif';
+    context.textAlign = 'center';
+    const half = context.measureText(word).width / 2 + 2;
+    context.fillText(word, Math.min(Math.max(x, across(0) + half), across(1) - half), y - 24 < up(1) ? y + 22 : y - 13);
   }
 
-  /** Lines between the words for how far it sags, and the words, as the window draws them.
+  /** Lines between the words for how far it sags, and the words, as the window draws them: what it is called as it is
+   * stands at the knob.
    * @type {(context: CanvasRenderingContext2D, sags: SagMap, subject: string, style: CSSStyleDeclaration,
    *   map: PadMap) => void} */
   #drawWords(context, sags, subject, style, { across, up, wide, high }) {
@@ -273,15 +282,14 @@ export class Panel {
     for (const [x, y] of sags.borders(Math.round(wide), Math.round(high)))
       context.fillRect(across(0) + x, up(0) - y - 1, 1.2, 1.2);
     context.globalAlpha = 1;
-    context.fillStyle = style.getPropertyValue('--text');
-    context.font = 'bold 12px system-ui, sans-serif';
+    context.fillStyle = style.getPropertyValue('--muted');
+    context.font = '12px system-ui, sans-serif';
     for (const [word, [x, y]] of Object.entries(sags.places)) {
       const half = context.measureText(word).width / 2 + 2;
       context.fillText(word, Math.min(Math.max(across(x), across(0) + half), across(1) - half), up(y) + 4);
     }
     context.textAlign = 'right';
     context.font = '11px system-ui, sans-serif';
-    context.fillStyle = style.getPropertyValue('--muted');
     context.fillText(`sag of ${subject}`, across(1), up(1) - 3);
   }
 }

@@ -504,7 +504,8 @@ export interface Made {
   // Cs and Cd by words of firmness.
   words: Record<string, Point>;
   // Sags of bodies by words of firmness.
-  sags: Record<string, number>;
+  sags: Record<string, { sag: number }>;
+  firmness: Record<string, { sag: number } | { hz: number, ratio: number }>[];
 }
 
 export interface Pair {

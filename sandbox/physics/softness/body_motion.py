@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, frequency_from_coefficients
-from sandbox.physics.keeping.equipment import FirmBody, StiffForm, design_gravity, height_of
+from sandbox.physics.keeping.equipment import FirmBody, StiffForm, design_gravity
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.softness.firmness import WORDS, lowest_mode_of
+from sandbox.physics.softness.firmness import WORDS, lowest_mode_of, standing_form
 from sandbox.physics.softness.kernels.lowest_mode import rows_of
-from sandbox.physics.softness.kernels.reach import STANDING
+from sandbox.physics.softness.standing import StandingForm
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import ALL_BUT_FIRM, MOTION, substep_coefficients, substep_time, turned
 from sandbox.physics.world import World
@@ -74,13 +74,14 @@ class SagCurve:
 
 @dataclass(frozen=True)
 class BodyMotion:
-    """A form by its lowest mode and height [m], under gravity [m/s^2], in steps of h [s], some a tick, by a solver.
+    """A form by its lowest mode, under gravity [m/s^2], in steps of h [s], some a tick, by a solver.
 
-    iterations: of the iterative solver; curve: what runs have told of its sag, None: nothing.
+    form: what says how far it sags where it stands; iterations: of the iterative solver; curve: what runs have told of
+    its sag, None: nothing.
     """
 
     lowest_mode: float
-    height: float
+    form: StandingForm
     gravity: float
     h: float
     substeps: int
@@ -92,9 +93,9 @@ class BodyMotion:
     def of(cls, shape: StiffForm, settings: WorldSettings, lowest_mode: float | None = None) -> "BodyMotion":
         """Motion of a body of a form; lowest_mode: where it is known."""
         mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
-        height, gravity = height_of(shape, *settings.gravity), design_gravity(*settings.gravity)
+        form, gravity = standing_form(shape, settings.gravity), design_gravity(*settings.gravity)
         substeps = settings.fewest_substeps
-        return cls(mode, height, gravity, substep_time(settings), substeps, settings.solver, settings.iterations)
+        return cls(mode, form, gravity, substep_time(settings), substeps, settings.solver, settings.iterations)
 
     def of_substep(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
         """Cs and Cd (k,) of a substep from those of a tick, as springs get them that have no firmness."""
@@ -133,9 +134,9 @@ class BodyMotion:
         whole, damp = self.whole(stiffness, damping)
         # k / m of the wobble [1/s^2]: Cs_a / ((1 - Cd_a) h^2), in a single pass Cs_a / h^2
         rate = whole / (self.h * self.h) / (1.0 - damp if SOLVERS[self.solver].bounded else 1.0)
-        square = rate / (4.0 * math.pi * math.pi) * self.height
+        square = rate / (4.0 * math.pi * math.pi) * self.form.length
         with np.errstate(divide="ignore"):
-            return np.asarray(np.where(square > 0.0, STANDING * self.gravity / square, np.inf))
+            return self.form.sags(np.where(square > 0.0, self.gravity / square, np.inf))
 
     def sag_of_tick(self, stiffness: Floats, damping: Floats) -> Floats:
         """The share of its height (k,) that it sags by, from Cs and Cd of its springs in a tick; see `tells_sag`."""
@@ -163,14 +164,23 @@ def _limited(stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class BodyReading:
-    """The firmness of a body as shown: its sag as a share (None: not known), its slowest wobble, whether it is rigid.
+    """The firmness of a body as shown: its slowest wobble, and whether it is rigid.
 
-    Rigid: its springs take back all of their errors, and keep none of their speed.
+    Rigid: its springs take back all of their errors, and keep none of their speed. view, stiffness, damping: what tells
+    its sag.
     """
 
-    sag: float | None
+    view: BodyMotion
+    stiffness: Floats
+    damping: Floats
     motion: SpringMotion
     is_rigid: bool
+
+    @property
+    def sag(self) -> float | None:
+        """Its sag as a share; None: not known."""
+        sag = self.view.sag(self.stiffness, self.damping)
+        return None if sag is None else float(sag[0])
 
 
 def read_body(
@@ -186,9 +196,8 @@ def read_body(
     first = body.springs[world.spring_active[body.springs]][:1]
     stiffness, damping = (each[first] for each in present or present_coefficients(world))
     view = BodyMotion.of(body.shape, world.settings, lowest_mode)
-    sag = view.sag(stiffness, damping)
     motion = view.motion(float(stiffness[0]), float(damping[0]))
-    return BodyReading(None if sag is None else float(sag[0]), motion, common[:2] == (1.0, 1.0))
+    return BodyReading(view, stiffness, damping, motion, common[:2] == (1.0, 1.0))
 
 
 def present_coefficients(world: World) -> tuple[Floats, Floats]:

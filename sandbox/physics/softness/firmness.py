@@ -1,6 +1,7 @@
 """Firmness of bodies, for who sets it: which bodies have one, what of it is in reach, and setting it.
 
-It is asked for as a sag, or a frequency and damping ratio; kernels/reach.py says what Cs and Cd that is.
+It is asked for as a sag, or a frequency and damping ratio. What sags so far where it stands, standing.py says, and
+kernels/reach.py what Cs and Cd that is.
 """
 
 import hashlib
@@ -13,10 +14,9 @@ import numpy as np
 from sandbox.physics.arena import FIRST_ARENA, MORE, answer_of
 from sandbox.physics.commands import command_table
 from sandbox.physics.commands.command import BEYOND_REACH, FLAT, NO_FIRMNESS, count_pieces
-from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.equipment import FirmBody, Firmness, StiffForm, design_gravity, height_of
+from sandbox.physics.keeping.equipment import FirmBody, Firmness, StiffForm, design_gravity
 from sandbox.physics.softness.kernels.lowest_mode import NO_MODE, find_lowest_mode
 from sandbox.physics.softness.kernels.reach import (
     BY_FREQUENCY,
@@ -25,11 +25,12 @@ from sandbox.physics.softness.kernels.reach import (
     BY_WOBBLE,
     FIRMED,
     NO_HEIGHT,
-    NOT_STIFF,
     OUT_OF_REACH,
+    STANDING,
     coefficients_within,
     sag_of,
 )
+from sandbox.physics.softness.standing import StandingForm
 from sandbox.physics.world import World
 
 # Sags by their words, from soft to hard.
@@ -38,11 +39,16 @@ WORDS = {"jelly": 0.25, "soft": 0.1, "firm": 0.02, "hard": 0.003, "rigid": 0.0}
 BUT_RIGID = ", but for 0, which is rigid"
 # Particles of the largest body whose firmness panels read where nothing has asked for it; it takes some 0.2 s.
 LARGEST_READ = 2_000
+# Frequencies [Hz] and the highest damping ratio that a wobble may have, and digits of both, where they are worked out.
+FREQUENCIES, MOST_RATIO, WOBBLE_DIGITS = (0.01, 1_000.0), 1.0, 6
 # Forms whose lowest mode is kept; those of a level, edited one by one, need no more.
 KEPT = 256
+# Forms whose sags are kept, each with a run that may go on.
+KEPT_FORMS = 64
 
-_REASONS = {NOT_STIFF: NO_FIRMNESS, NO_HEIGHT: FLAT, OUT_OF_REACH: BEYOND_REACH}
+_REASONS = {NO_HEIGHT: FLAT, OUT_OF_REACH: BEYOND_REACH}
 _kept: dict[bytes, float] = {}
+_standing: dict[tuple[bytes, tuple[float, float]], StandingForm] = {}
 
 
 class OutOfReach(ValueError):
@@ -55,25 +61,32 @@ class OutOfReach(ValueError):
 
 @dataclass(frozen=True)
 class FirmnessRange:
-    """The range of firmness of a body whose form has this lowest mode and height [m].
+    """The range of firmness of a body whose form has this lowest mode, and this height [m] that it sags by.
 
-    Under gravity [m/s^2], and in ticks of h [s].
+    Under gravity [m/s^2], and in ticks of h [s]. form: what says how far it sags; None: it does as a square.
     """
 
     lowest_mode: float
     height: float
     gravity: float
     h: float
+    form: StandingForm | None = None
 
     @classmethod
     def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "FirmnessRange":
         """The firmness that a form can have."""
-        return cls(lowest_mode_of(shape), height_of(shape, *gravity), design_gravity(*gravity), 1.0 / tick_rate)
+        form = standing_form(shape, gravity)
+        return cls(lowest_mode_of(shape), form.length, design_gravity(*gravity), 1.0 / tick_rate, form)
 
     def coefficients(self, firmness: Firmness) -> tuple[float, float]:
         """Cs and Cd of the body as a whole. Raises OutOfReach."""
-        found = np.zeros(2)
-        code = coefficients_within(self.lowest_mode, self.height, self.gravity, self.h, *_asked(firmness), found)
+        if not self.lowest_mode > 0.0:
+            raise _out_of_reach(NO_FIRMNESS, firmness, (), 1.0 / self.h)
+        found, gravity = np.zeros(2), self.gravity
+        if firmness.sag and self.form is not None:
+            # The kernel is told of a square that sags so far under as much more gravity.
+            gravity *= self.form.constant(firmness.sag) / STANDING
+        code = coefficients_within(self.lowest_mode, self.height, gravity, self.h, *_asked(firmness), found)
         if code != FIRMED:
             raise _out_of_reach(_REASONS[code], firmness, found.tolist(), 1.0 / self.h)
         return float(found[0]), float(found[1])
@@ -85,8 +98,19 @@ class FirmnessRange:
         except OutOfReach as error:
             if error.nearest is None:
                 raise
-            return error.nearest
+            # What sags otherwise may be in reach otherwise.
+            return self.nearest(error.nearest)
         return firmness
+
+    def as_wobble(self, firmness: Firmness) -> Firmness:
+        """A firmness as commands have it: what sags by the numbers of its wobble. Raises OutOfReach."""
+        return self.wobble_of(*self.coefficients(firmness)) if firmness.sag else firmness
+
+    def wobble_of(self, stiffness: float, damping: float) -> Firmness:
+        """The firmness, by its wobble, that is nearest to these Cs and Cd of a body as a whole."""
+        hz, ratio = frequency_from_coefficients(stiffness, damping, self.h)
+        hz, ratio = (float(f"{value:.{WOBBLE_DIGITS}g}") for value in (min(hz, FREQUENCIES[1]), min(ratio, MOST_RATIO)))
+        return self.nearest(Firmness(hz=hz, ratio=ratio))
 
     def reading(self, stiffness: float, damping: float) -> tuple[float, float, float]:
         """Sag, frequency [Hz] and damping ratio of a body of these Cs and Cd as a whole."""
@@ -94,24 +118,40 @@ class FirmnessRange:
 
     def sag_of(self, stiffness: float, damping: float) -> float:
         """The sag of a body of these Cs and Cd as a whole; inf where Cs is 0."""
-        return sag_of(self.height, self.gravity, self.h, stiffness, damping)
+        sag = sag_of(self.height, self.gravity, self.h, stiffness, damping)
+        return sag if self.form is None else float(self.form.sags(np.array([sag / STANDING]))[0])
+
+
+def standing_form(shape: StiffForm, gravity: tuple[float, float]) -> StandingForm:
+    """What a form sags by where it stands under gravity [m/s^2] of this direction; kept, as its lowest mode is."""
+    strength = design_gravity(*gravity)
+    key = _key_of(shape), (gravity[0] / strength, gravity[1] / strength)
+    if key not in _standing:
+        while len(_standing) >= KEPT_FORMS:
+            del _standing[next(iter(_standing))]
+        _standing[key] = StandingForm(shape, gravity, lowest_mode_of(shape))
+    return _standing[key]
 
 
 def lowest_mode_of(shape: StiffForm) -> float:
     """The lowest eigenvalue of a form, without unit; 0 where it is not stiff without pins."""
-    arrays: list[Any] = [np.ascontiguousarray(rows) for rows in shape]
-    form, digest = StiffForm(*arrays), hashlib.blake2b(digest_size=16)
-    for array in form:
-        digest.update(f"{array.shape}".encode() + array.tobytes())
-    key = digest.digest()
+    key = _key_of(shape)
     if key not in _kept:
         while len(_kept) >= KEPT:
             del _kept[next(iter(_kept))]
-        arena = np.zeros(FIRST_ARENA, np.int64)
+        arrays: list[Any] = [np.ascontiguousarray(rows) for rows in shape]
+        form, arena = StiffForm(*arrays), np.zeros(FIRST_ARENA, np.int64)
         while (found := find_lowest_mode(form, arena)) == NO_MODE:
             arena = np.zeros(MORE * int(arena[0]), np.int64)
         _kept[key] = found
     return _kept[key]
+
+
+def _key_of(shape: StiffForm) -> bytes:
+    digest = hashlib.blake2b(digest_size=16)
+    for array in shape:
+        digest.update(f"{array.shape}".encode() + array.tobytes())
+    return digest.digest()
 
 
 def _asked(firmness: Firmness) -> tuple[int, float, float]:
@@ -131,9 +171,11 @@ def words_of_reach(asked: Firmness, nearest: Sequence[float], tick_rate: float) 
 
 
 def _out_of_reach(reason: int, asked: Firmness, nearest: Sequence[float], tick_rate: float) -> OutOfReach:
-    words, found = words_of_reach(asked, nearest, tick_rate)
     text = command_table.WORDS[reason].removeprefix("{}: ")
-    return OutOfReach(text.format(*words), found) if reason == BEYOND_REACH else OutOfReach(text, None)
+    if reason != BEYOND_REACH:
+        return OutOfReach(text, None)
+    words, found = words_of_reach(asked, nearest, tick_rate)
+    return OutOfReach(text.format(*words), found)
 
 
 def give_firmness(
@@ -143,14 +185,17 @@ def give_firmness(
 
     Raises OutOfReach.
     """
-    way, value, second = _asked(firmness)
-    try:
-        world.command(
-            "soften", body=body, whole=True, way=way, value=value, second=second, gravity=gravity, duration=duration
-        )
-    except RefusedCommand as refused:
-        numbers = refused.numbers[-2:]
-        raise _out_of_reach(refused.reason, firmness, numbers, world.settings.tick_rate) from None
+    asked = softening(world, body, firmness, gravity)
+    world.command("soften", **asked, duration=duration)
+
+
+def softening(world: World, body: int, firmness: Firmness, gravity: tuple[float, float]) -> dict[str, Any]:
+    """What `soften` takes for that, but for its duration. Raises OutOfReach."""
+    reach = FirmnessRange.of(world.forms[body].shape, gravity, world.settings.tick_rate)
+    stiffness, damping = reach.coefficients(firmness)
+    return {
+        "body": body, "whole": True, "way": BY_PAIR, "value": stiffness, "second": damping, "gravity": (0.0, 0.0),
+    }  # fmt: skip
 
 
 def set_firmness(world: World, body: int, stiffness: float, damping: float, duration: int = 0) -> None:

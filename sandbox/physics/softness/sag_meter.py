@@ -18,7 +18,7 @@ from sandbox.physics.keeping.equipment import FirmBody, Firmness, StiffForm, des
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.softness.body_motion import Pair, SagCurve, present_coefficients, softness_of
-from sandbox.physics.softness.firmness import LARGEST_READ, FirmnessRange, firm_bodies, lowest_mode_of
+from sandbox.physics.softness.firmness import FREQUENCIES, LARGEST_READ, FirmnessRange, firm_bodies, lowest_mode_of
 from sandbox.physics.softness.kernels.reach import STANDING
 from sandbox.physics.softness.settling import SettleRun, Support, SupportedBody, supported_body
 from sandbox.physics.solvers import SOLVERS
@@ -42,8 +42,8 @@ RIGID = 1e-7
 FOOTHOLDS = (1.0, 0.1, 0.01)
 # Sags between these say where other runs come to rest; a search takes what sags by more for collapsed.
 SMALL, LARGE, FLYING = 1e-5, 0.5, 2.0
-# Frequencies [Hz] that firmness may have, and halvings of their range.
-FREQUENCIES, HALVINGS = (0.01, 1_000.0), 24
+# Halvings of the range of frequencies.
+HALVINGS = 24
 
 # Digits of lengths and masses by which bodies count as alike.
 ALIKE = 9

@@ -16,17 +16,16 @@ from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.keeping.equipment import FirmBody, design_gravity
 from sandbox.physics.marks import BANK_UNOPENED, TERRAIN_GROUP
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.softness.standing import lies_on_ends, stood_up, upright
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
 
-# A frame at least so many times as long as high, which nothing holds, lies on its two ends; elsewhere at its foot or at
-# its head is this share of its height, and held from end to end is what is held over this share of its length.
-SLENDER, EDGE, SPAN = 4.0, 0.12, 0.6
+# At its foot or at its head is this share of a body's height, and held from end to end is what is held over this share
+# of its length.
+EDGE, SPAN = 0.12, 0.6
 # A body at one point hangs on it as a wheel does, where its centre lies within this share of its size from it.
 BALANCED = 0.05
-# Standing, its centre of mass lies above its foot by this share of its own height, so that it does not tip over.
-STEADY = 0.1
 # What is no farther from terrain than this share of the body's shortest spring lies on it.
 TOUCHING = 0.3
 # Friction of a floor, and of what a beam's ends lie on.
@@ -203,11 +202,8 @@ def _may_buckle(body: SupportedBody) -> bool:
 def supported_body(world: World, body: FirmBody) -> SupportedBody:
     """A body with the supports it has in its world."""
     slots = slots_of(world, body)
-    gravity, pairs = world.settings.gravity, body.shape.pairs
-    strength = design_gravity(*gravity)
-    x, y = (gravity[0] / strength, gravity[1] / strength) if any(gravity) else (0.0, -1.0)
-    # Turned so that gravity goes down.
-    points = body.shape.points @ np.array([[-y, -x], [x, -y]])
+    pairs = body.shape.pairs
+    points = upright(body.shape.points, world.settings.gravity)
     rest = world.natural_length[body.springs]
     held = _is_held(world, body, slots)
     rests = np.zeros(len(points), np.bool_)
@@ -216,9 +212,8 @@ def supported_body(world: World, body: FirmBody) -> SupportedBody:
     if held.any():
         held, support = _support_of(points, weight, held, pairs)
     if not held.any():
-        points = _stood_up(points, weight)
-        wide, tall = np.ptp(points, axis=0)
-        if not len(body.shape.areas) and wide >= SLENDER * tall:
+        points = stood_up(points, weight)
+        if lies_on_ends(body.shape, points):
             support = Support.ENDS
             rests = _resting(world, slots, float(rest.min()), points)
     wide, tall = (float(size) for size in np.ptp(points, axis=0))
@@ -281,44 +276,6 @@ def _support_of(points: Floats, weight: Floats, held: Flags, pairs: Slots) -> tu
     if np.ptp(points[held], axis=0).max() >= SPAN * max(wide, tall):
         return held, Support.SPANNED
     return held, Support.ARM
-
-
-def _stood_up(points: Floats, weight: Floats) -> Floats:
-    """Points turned by the least angle that lets them stand on a side of their hull without tipping over."""
-    hull = _hull(points)
-    if len(hull) < 3:
-        return points
-    centre = weight @ points / weight.sum()
-    best, least = points, np.inf
-    for start, end in zip(hull, np.roll(hull, -1, axis=0), strict=True):
-        along = (end - start) / np.hypot(*(end - start))
-        at = float((centre - start) @ along)
-        height = float(along[0] * (centre - start)[1] - along[1] * (centre - start)[0])
-        margin = min(at, float((end - start) @ along) - at) / max(height, 1e-12)
-        angle = abs(np.arctan2(along[1], along[0]))
-        # One that would tip over comes after all that would not.
-        order = angle if margin >= STEADY else 10.0 - margin
-        if order < least:
-            least, best = order, points @ np.array([[along[0], -along[1]], [along[1], along[0]]])
-    return best
-
-
-def _hull(points: Floats) -> Floats:
-    """The convex hull of points, counter-clockwise, without what lies on its sides."""
-    rows = points[np.lexsort((points[:, 1], points[:, 0]))]
-    slack = 1e-9 * float(np.ptp(points)) ** 2
-    halves: list[Floats] = []
-    for order in (rows, rows[::-1]):
-        chain: list[Floats] = []
-        for point in order:
-            while len(chain) > 1:
-                (ax, ay), (bx, by) = chain[-1] - chain[-2], point - chain[-2]
-                if ax * by - ay * bx > slack:
-                    break
-                chain.pop()
-            chain.append(point)
-        halves += chain[:-1]
-    return np.array(halves)
 
 
 def _resting(world: World, slots: Slots, shortest: float, points: Floats) -> Flags:

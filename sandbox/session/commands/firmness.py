@@ -12,7 +12,8 @@ from sandbox.session.commands.ramping import Duration
 class SetFirmness(Command):
     """Set how soft a body is as a whole, whatever its grid, size and mass: by its sag, or by hz and ratio.
 
-    For bodies whose form is stiff without pins. sag: part of its height by which it sags where it stands, 0 = rigid;
+    For bodies whose form is stiff without pins. sag: part of its height by which a square as high, and of the same
+    slowest wobble, sags where it stands, 0 = rigid; FirmnessRange says what wobble makes a body itself sag so far.
     hz, ratio: frequency [Hz] and damping ratio of its slowest wobble, ratio null = 0.15 or the least possible.
     It becomes so in `duration` ticks.
     """

@@ -26,7 +26,7 @@ FIND = "Find a field"
 MEASURED = FieldInfo(
     "text", "In play",
     tooltip="How soft play says that it is: the word and the sag that it measures as it stands or hangs here. "
-    "The sag above is that of a body as high as wide; a flat one gives way less.",
+    "The sag above is that of the body where it stands, held by nothing.",
 )  # fmt: skip
 NOT_FOUND = "No field matches these words."
 # Digits after the point of a view [m] that is taken from the camera.

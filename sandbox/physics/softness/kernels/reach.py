@@ -1,14 +1,17 @@
 """Cs and Cd of a body as a whole, from what is asked of it; and the nearest that can be had.
 
 A body's slowest wobble moves as one spring with a Cs and Cd of its own (`of_body`). Firmness gives these two: by the
-frequency and damping ratio of the wobble, or by the part of its height by which the body sags under its weight,
+frequency and damping ratio of the wobble, or by the part of its height by which a square of that height and wobble sags
+under its weight,
 
     sag = STANDING g / (F^2 H),   (2 pi F)^2 = k / m = Cs / ((1 - Cd) h^2),   H = height of the form along gravity g
 
-F is the frequency f of the wobble where h is short; at Cs and Cd near 1 the wobble is slower than its k says.
+F is the frequency f of the wobble where h is short; at Cs and Cd near 1 the wobble is slower than its k says. What a
+body of another form sags by, standing.py says.
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 from sandbox.physics.arrays import Floats
@@ -30,6 +33,8 @@ USUAL_RATIO = 0.15
 SPARE_RATIO = 1.05
 # Cs and Cd have so many decimals.
 DECIMALS = 1e13
+# Wobbles that are kept.
+KEPT = 256
 # Steps of damping ratios, where the least is looked for, and halvings of ranges of frequencies and sags.
 RATIO_STEPS = 1_000
 HALVINGS = 100
@@ -205,3 +210,10 @@ def coefficients_within(
 ) -> int:
     """`share_out`, for who has no world; see Reach and Asked."""
     return share_out(Reach(lowest_mode, height, gravity, h), Asked(way, value, second), found)
+
+
+@lru_cache(KEPT)
+def wobble_of_square(reach: Reach, sag: float) -> tuple[float, float]:
+    """Frequency [Hz] and damping ratio of the wobble that BY_SAG makes of a sag, from which it makes Cs and Cd."""
+    hz, ratio = _standing(reach, sag)
+    return hz, ratio
