@@ -303,6 +303,7 @@ export class Hands {
     else if (free !== null) {
       pointer.hand = this.hold(free, pointer.point, pointer.within);
       if (pointer.hand !== null) pointer.kind = 'hold';
+      else if (this.isStill()) pointer.kind = 'done';
       if (pointer.hand !== null && this.isStill()) this.say(HANDS.TIME_STANDS);
     }
     const particle = pointer.kind === 'hold' && free !== null ? free : touched;
