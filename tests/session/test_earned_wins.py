@@ -18,7 +18,7 @@ from tests.support.wholes import part_and_whole
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")
 
 # Runs of each way in which a level is played, and for how long [s].
-FEW, MANY, SECONDS = 8, 200, 12.0
+FEW, MANY, SECONDS = 6, 200, 10.0
 KEYS = {"set_drive", "hold_key", "undo", "redo"}
 PULLING = {"grab", "move_grab", "release"}
 # What hands may do in each level.

@@ -307,7 +307,7 @@ export class Hands {
       if (pointer.hand !== null && this.isStill()) this.say(HANDS.TIME_STANDS);
     }
     const particle = pointer.kind === 'hold' && free !== null ? free : touched;
-    if (pointer.kind !== 'pan') this.speak(`Holding ${this.#thing(particle)}.`);
+    if (pointer.kind === 'carry' || pointer.kind === 'hold') this.speak(`Holding ${this.#thing(particle)}.`);
     if (pointerType !== 'mouse') pointer.timer = setTimeout(() => this.#ask(pointer, particle), LONG);
   }
 
