@@ -136,7 +136,7 @@ def parts_on_the_goal(cheat: Cheat) -> Iterator[None]:
     for _ in range(5):
         x, y = cheat.goal()
         cheat.do("add_body", body=cheat.part((x, y), cheat.chance.uniform(0.3, 1.5)))
-        cheat.do("add_particle", position=[x, y], mass=50.0, radius=0.2, pinned=True)
+        cheat.do("add_particle", position=[x, y], mass=5000.0, radius=0.2)
         added = [name for name in cheat.world.particle_names if name.startswith("+.")]
         ends = {"particle_a": cheat.thing(), "particle_b": added[-1] if added else cheat.thing()}
         cheat.do("add_spring", **ends, rest_length=0.1, stiffness=0.9)
