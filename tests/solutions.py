@@ -123,15 +123,15 @@ SOLUTIONS: dict[str, list[Gesture]] = {
 }  # fmt: skip
 
 
-def play(session: Session, gestures: list[Gesture]) -> None:
-    """Do all of it, until the level is won or lost."""
+def play(session: Session, gestures: list[Gesture], longest: float = LONGEST) -> None:
+    """Do all of it, until the level is won or lost, or for so long [s]."""
     rate = session.level.settings.tick_rate
     lines = sorted(
         ((round(time * rate), number, record) for number, each in enumerate(gestures) for time, record in each),
         key=lambda line: line[:2],
     )
     numbers = [session.new_gesture() for _ in gestures]
-    while outcome(session.level, session.world) is None and session.tick < LONGEST * rate:
+    while outcome(session.level, session.world) is None and session.tick < longest * rate:
         while lines and lines[0][0] == session.tick:
             _, number, record = lines.pop(0)
             if record["type"] == "grab":

@@ -18,7 +18,7 @@ from tests.support.wholes import part_and_whole
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")
 
 # Runs of each way in which a level is played, and for how long [s].
-FEW, MANY, SECONDS = 6, 200, 10.0
+FEW, MANY, SECONDS = 4, 200, 10.0
 KEYS = {"set_drive", "hold_key", "undo", "redo"}
 PULLING = {"grab", "move_grab", "release"}
 # What hands may do in each level.
@@ -171,6 +171,7 @@ def unfair(level: str, way: Any, runs: range) -> tuple[list[str], int]:
     return found, won
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("runs", part_and_whole(FEW, MANY))
 @pytest.mark.parametrize("way", [some_tricks, random_play], ids=lambda way: way.__name__)
 @pytest.mark.parametrize("level", DEEDS)
