@@ -10,7 +10,7 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.jit import COMPILED
 from sandbox.session.outcome import outcome
 from sandbox.session.session import Session
-from tests.solutions import ahead, drive, firmness, material, play, press
+from tests.solutions import ahead, drag, drive, firmness, material, play, press
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")
 
@@ -99,3 +99,22 @@ def test_the_bed_throws_the_ball_into_the_basket_for_a_wide_range_of_stiffness()
         )
         won += ended(session) is not None
     assert won >= 6
+
+
+def test_what_a_hand_carries_over_the_wall_does_not_count_until_it_is_thrown():
+    carried = drag("ball", (1.0, -5.0, 0.4), (2.0, -1.0, 7.0), (2.3, 4.0, 7.0), (3.0, 6.2, 5.0), (5.0, 6.2, 2.6))
+    session = played("basket_throw", carried, seconds=12.0)
+    x, y = place(session, "ball")
+    assert ended(session) is None and 5.1 < x < 7.4 and y < 3.1
+    assert session.world.rule_first[[rule.id for rule in session.level.rules].index("carried")] > 0
+
+
+def test_a_crate_that_a_hand_carries_over_the_river_is_lost_however_low():
+    low = drag("crate 3.4", (1.0, -6.6, 1.05), (2.0, -6.6, 2.4), (5.0, 8.0, 2.4), (6.0, 8.0, 1.2))
+    assert ended(played("ferry", low)) == (False, "Crates do not fly over the river: each lies in the boat.")
+
+
+def test_a_marble_that_a_hand_brings_to_the_dominoes_is_lost():
+    brought = drag("marble", (1.0, -8.85, 6.15), (2.0, -8.0, 7.0), (4.0, -2.0, 7.0), (5.0, -2.2, 5.0))
+    is_won, text = ended(played("chain_of_events", brought))
+    assert not is_won and text.startswith("The hand brought the marble.")
