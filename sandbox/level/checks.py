@@ -25,6 +25,7 @@ Metric = Literal[
     "distance",
     "inside",
     "settled",
+    "held",
 ]
 Box = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
 # Keys that a check may hold.
@@ -67,6 +68,7 @@ METRICS: dict[str, Measured] = {
     "settled": Measured(
         "stands still", "{owner} stands still for {bounds}", "s", may_have=("body",), at_least=1.0, usual=(1.0, None)
     ),
+    "held": Measured("hands that hold", "hands that hold something: {bounds}", at_least=1.0, usual=(1.0, None)),
     "distance": Measured(
         "distance", "the distance from {owner} to {other} is {bounds}", "m", ("particle", "other"), usual=(None, 1.0)
     ),
@@ -142,7 +144,7 @@ class CheckDef(Description):
     )
     at_least: float | None = Field(
         default=None,
-        description="Lower bound. Without bounds, a check of `inside` has 0, and one of `settled` 1.",
+        description="Lower bound. Without bounds, a check of `inside` has 0, and one of `settled` or `held` 1.",
         json_schema_extra=unit("the metric's") | empty("no bound"),
     )
     hold: tuple[HoldDef, ...] = Field(

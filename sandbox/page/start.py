@@ -206,7 +206,7 @@ def is_done_by_pages(name: str) -> bool:
 def _action(action: ActionDef, world: LevelWorld) -> dict[str, Any]:
     """An action as a page does it: what it says, and a counter or a command with slots in place of names."""
     level, rate = world.level, world.settings.tick_rate
-    counters = [counter.id for counter in level.counters]
+    counters = level.counter_names
     made: dict[str, Any] = action.model_dump(include={"win", "fail", "say", "sound"}, exclude_none=True)
     if action.stars is not None:
         stars = action.stars

@@ -25,7 +25,7 @@ class RuleActions:
     def __init__(self, level: Level, world: LevelWorld) -> None:
         """world: that of the level, at its start."""
         self._level = level
-        self._counters = [counter.id for counter in level.counters]
+        self._counters = level.counter_names
 
     def act(self, world: LevelWorld) -> None:
         """Do what is due: rule by rule in the order of the file, of each its actions in order.

@@ -15,6 +15,7 @@ from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spri
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.geometry.elementary import sum_in_order
 from sandbox.physics.keeping.arguments import of_kind
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.world import World
 from sandbox.session.commands import SetDrive
 from sandbox.session.session import Session
@@ -293,4 +294,5 @@ _VALUES: dict[str, Callable[[_Gauge, World, CheckDef], float]] = {
     "distance": _Gauge._distance,
     "inside": _Gauge._inside,
     "settled": _Gauge._settled,
+    "held": lambda gauge, world, check: sum(map(world.is_held, range(GRAB_COUNT))),
 }

@@ -23,6 +23,8 @@ from sandbox.session.session import Session
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 SOLUTION_SUFFIX = ".solution.replay.gz"
+# Said of a level with a goal that lets hands do everything.
+OPEN = "may do everything, so whoever pauses puts things where they win: say in hands what the level is about"
 
 
 @dataclass(frozen=True)
@@ -39,14 +41,9 @@ def solution_of(path: Path) -> Path:
     return path.with_name(f"{path.name.removesuffix('.json')}{SOLUTION_SUFFIX}")
 
 
-def has_goal(level: Level) -> bool:
-    """Whether a rule of a level wins it."""
-    return any(action.win is not None for rule in level.rules for action in rule.then)
-
-
 def try_goal(level: Level, path: Path) -> GoalResult | None:
     """Run a level by the solution beside its file, until it is won or lost; None for a level without a goal."""
-    if not has_goal(level):
+    if not level.has_goal:
         return None
     solution = solution_of(path)
     if not solution.exists():
@@ -103,6 +100,7 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
         f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
         *(f"  check      {result.text}" for result in results),
         *([f"  goal       {goal.text}"] if goal else []),
+        *([f"  hands      {OPEN}"] if level.leaves_all_open else []),
         *([f"  rollback   {again}"] if again else []),
     )
     passed = all(result.passed for result in results) and (goal is None or goal.passed)
@@ -115,6 +113,8 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     if goal is not None:
         won = outcome_data(goal.outcome, level.settings.tick_rate)
         data["goal"] = {"passed": goal.passed, "outcome": won, "text": goal.text}
+    if level.leaves_all_open:
+        data["hands"] = OPEN
     if again is not None:
         data["rollback"] = {"passed": again.found is None, "ticks": again.ticks, "text": str(again)}
     return LevelReport(finite(data), lines, passed=passed)

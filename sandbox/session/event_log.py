@@ -298,7 +298,7 @@ def tick_events_of(run: Session, last: int) -> Iterator[Event]:
 
 def _of_rules(level: Level, tick: int, kept: TickEvents) -> Iterator[Event]:
     """Events of the rules that fired in a tick."""
-    values = dict(zip((counter.id for counter in level.counters), kept.counters, strict=False))
+    values = dict(zip(level.counter_names, kept.counters, strict=False))
     for number in kept.rules:
         rule = level.rules[number]
         for action in rule.then:

@@ -64,7 +64,7 @@ def stars_of(stars: StarsDef | None, level: Level, state: World | Snapshot, tick
         return MOST_STARS
     value = tick / level.settings.tick_rate
     if stars.counter is not None:
-        value = float(state.counter[[counter.id for counter in level.counters].index(stars.counter)])
+        value = float(state.counter[level.counter_names.index(stars.counter)])
     is_least = stars.third > stars.second
     return 1 + sum(value >= bound if is_least else value <= bound for bound in (stars.second, stars.third))
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sandbox.physics.analysis.query import free_particle_at, grip_radius, nearest_particle
+from sandbox.physics.commands.command_table import lets_hands
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import HAND_STRENGTH
@@ -15,6 +16,8 @@ from sandbox.tools.tool import CLICK_SHARE, NOTHING, PlayTool, Point, PointerEve
 # times a body's weight and spares what tears, strong moves what stands under a load.
 STRENGTHS = {"gentle": 30.0, "normal": HAND_STRENGTH, "strong": 300.0}
 
+# Said of a drag while time stands, where the level lets no hand move things at once.
+TIME_STANDS = "Time stands: here a hand only pulls, once time goes on (Space)."
 # Decimals of a place [m] that a hand moves to, more where this part of a pick radius is finer.
 DECIMALS, FINEST = 3, 1 / 28
 
@@ -103,7 +106,8 @@ class DragTool(Tool):
 
     def _press(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         particle = free_particle_at(snapshot, event.position, event.pick_radius)
-        if event.paused and not event.shift:
+        stands = event.paused and not event.shift
+        if stands and lets_hands(snapshot, "move_body"):
             # What is pinned can be put elsewhere too.
             carried = nearest_particle(snapshot, event.position, event.pick_radius)
             carried = particle if carried is None else carried
@@ -129,7 +133,7 @@ class DragTool(Tool):
         self._dragged = hand
         target, strength = _shifted(event, hold.beside), STRENGTHS[self.strength]
         grab = Grab(hand, particle, target, strength, grip_radius(snapshot, particle))
-        return Response((Submission(grab, hold.gesture),))
+        return Response((Submission(grab, hold.gesture),), TIME_STANDS if stands else None)
 
     def _move(self, event: PointerEvent) -> Response:
         assert self._dragged is not None

@@ -521,3 +521,18 @@ def test_what_is_over_water_does_not_fall_for_ever_and_water_in_water_is_told():
         level = parse_level(json.dumps(head | {"zones": zones}).encode(), "w")
         found = [each.text for each in findings(level, make_scene(level)) if each is not None]
         assert len(found) == len(lines) and all(line in text for line, text in zip(lines, found, strict=True))
+
+
+def test_a_goal_that_lets_hands_do_everything_is_found_and_a_remedy_lets_them_only_pull():
+    asks = {"metric": "y", "particle": "ball", "at_least": 5}
+    data = {
+        "format": "spring-sandbox/level", "version": 3, "name": "Open", "settings": {"gravity": [0, 0]},
+        "particles": [{"id": "ball", "position": [0, 0]}],
+        "rules": [{"id": "goal", "when": asks, "then": [{"win": "Up!"}]}],
+    }  # fmt: skip
+    for hands in (None, {}, {"bodies": ["ball"]}):
+        level = parse_level(json.dumps(data | ({} if hands is None else {"hands": hands})).encode(), "open")
+        (finding,) = [each for each in found(level) if each.text.startswith("Whoever pauses")]
+        mended = finding.remedy.edit(Document(level)).level
+        assert mended.hands.may == ("grab",) and mended.hands.bodies == (level.hands and level.hands.bodies)
+        assert not [text for text in texts(mended) if text.startswith("Whoever pauses")]

@@ -4,7 +4,7 @@ import pytest
 
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
-from sandbox.session.checking import has_goal, solution_of, try_goal
+from sandbox.session.checking import solution_of, try_goal
 from sandbox.session.outcome import outcome
 from sandbox.session.session import Session
 from tests.solutions import SOLUTIONS
@@ -12,7 +12,7 @@ from tests.support.wholes import some_and_whole
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")
 
-GOALS = [path for path in shipped_levels() if has_goal(read_level(path))]
+GOALS = [path for path in shipped_levels() if read_level(path).has_goal]
 PATIENCE = 60.0  # [s]
 # A minute of these takes seconds.
 DEAR = ("egg_drop", "chain_of_events")

@@ -6,6 +6,7 @@ import pytest
 
 from sandbox.replay import Replay, read_replay, verify
 from sandbox.session.replay.link import replay_of
+from sandbox.tools.drag import TIME_STANDS
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import STANDS, START_OVER, opened, saved
@@ -120,3 +121,20 @@ def test_nothing_can_be_freed_where_nothing_touches(browser: Browser, tmp_path: 
     tab = _opened(browser, tmp_path, "rope")
     click(tab, place(tab, "rope.20"), "right")
     assert "free it" not in tab.evaluate("document.getElementById('menu').textContent")
+
+
+def test_a_drag_while_time_stands_only_pulls_where_hands_may_not_move_things_at_once(
+    browser: Browser, tmp_path: Path
+) -> None:
+    tab = _opened(browser, tmp_path, "ferry")
+    x, y = place(tab, "crate 1.4")
+    tab.mouse("mousePressed", x, y)
+    tab.mouse("mouseMoved", x + 200, y - 100)
+    assert place(tab, "crate 1.4") == pytest.approx((x, y), abs=0.01)
+    assert text(tab, "#state") == TIME_STANDS
+    _steps(tab, 20)
+    assert place(tab, "crate 1.4")[0] > x + 2
+    tab.mouse("mouseReleased", x + 200, y - 100)
+    replay = _ends_as_on_the_desktop(tab, tmp_path)
+    assert {line.record["type"] for line in replay.script} == {"grab", "move_grab", "release"}
+    assert tab.faults == []

@@ -9,9 +9,21 @@ from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.rules.player_limits import DEEDS, MEANINGS
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.commands import COMMAND_TYPES, AddParticle, CommandError, CutSprings, Grab, Pin, SetGravity, Unpin
+from sandbox.session.check_run import run_checks
+from sandbox.session.commands import (
+    COMMAND_TYPES,
+    AddParticle,
+    CommandError,
+    CutSprings,
+    Grab,
+    Pin,
+    Release,
+    SetGravity,
+    Unpin,
+)
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.compare.comparison import verify
+from sandbox.session.outcome import outcome
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 
@@ -133,3 +145,42 @@ def test_every_word_stands_for_commands_and_every_command_but_keys_history_and_p
     meant = [kind for meaning in MEANINGS.values() for kind in meaning.commands]
     assert set(MEANINGS) == set(DEEDS) and len(meant) == len(set(meant))
     assert set(COMMAND_TYPES) - set(meant) == {"set_drive", "hold_key", "undo", "redo", "set_colour"}
+
+
+def test_rules_and_checks_know_how_many_hands_hold_something():
+    asked = [("one", {"metric": "held"}), ("two", {"metric": "held", "at_least": 2, "at_most": 2})]
+    rules = [{"id": name, "when": when, "then": [{"count": name}]} for name, when in asked]
+    checks = [{"name": "no hand", "metric": "held", "after": 0.1, "at_most": 0}]
+    data = LEVEL | {"counters": [{"id": name} for name, _ in asked], "rules": rules, "checks": checks}
+    session = Session(parse_level(json.dumps(data).encode(), "held"))
+    ball, end = (session.world.particle_slot(name) for name in ("ball", "rope.end"))
+    steps = ([], [Grab(0, ball, (5.0, 6.0))], [], [Grab(1, end, (3.0, 6.0))], [Release(1)], [Release(0)])
+    counted = []
+    for commands in steps:
+        assert said(session, *commands) == []
+        session.advance()
+        counted.append(session.world.counter.tolist())
+    assert counted == [[0, 0], [1, 0], [1, 0], [1, 1], [1, 1], [1, 1]]
+    assert run_checks(session.level)[0].value == 0.0
+
+
+def test_stars_go_by_what_hands_have_left():
+    rules = [{"id": "win", "when": {"time": 0.1}, "then": [
+        {"win": "Built", "stars": {"counter": "Parts left", "second": 1, "third": 2}}]}]  # fmt: skip
+    limits = {"hands": {"may": ["add"], "at_most": {"add": 3}}}
+    level = parse_level(json.dumps(LEVEL | {"rules": rules} | limits).encode(), "stars")
+    earned = []
+    for parts in range(4):
+        session = Session(level)
+        assert said(session, *(AddParticle((float(k), 0.0)) for k in range(parts))) == []
+        while outcome(level, session.world) is None:
+            session.advance()
+        earned.append(outcome(level, session.world).stars)
+    assert earned == [3, 3, 2, 1]
+
+
+def test_a_counter_of_a_budget_that_is_not_there_is_a_fault():
+    asks = {"id": "rule", "when": {"counter": "Parts left", "at_most": 0}, "then": [{"say": "None"}]}
+    with pytest.raises(LevelError) as refused:
+        parse_level(json.dumps(LEVEL | {"rules": [asks]}).encode(), "none")
+    assert refused.value.faults == ['none: rules.0.when.counter: there is no counter "Parts left"']

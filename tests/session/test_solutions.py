@@ -86,3 +86,11 @@ def test_pytest_runs_the_solution_of_a_level_as_a_test_of_its_own(level, pyteste
     harder(pytester.path / "answering.json")
     found = pytester.runpytest_inprocess("-v", *LOADED)
     found.stdout.fnmatch_lines(["*goal FAILS: not won in the 4.00 s of answering.solution.replay.gz*"])
+
+
+def test_a_level_with_a_goal_that_leaves_all_tools_open_is_told(level, told):
+    assert "hands      may do everything, so whoever pauses" in told("check", str(level))[1]
+    data = json.loads(level.read_text(encoding="utf-8"))
+    data["hands"] = {"may": ["grab"]}
+    level.write_text(json.dumps(data), encoding="utf-8")
+    assert "whoever pauses" not in told("check", str(level))[1]

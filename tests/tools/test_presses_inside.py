@@ -9,7 +9,7 @@ from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.session.commands import Grab, MoveBody
 from sandbox.session.session import Session
-from sandbox.tools.drag import DragTool
+from sandbox.tools.drag import TIME_STANDS, DragTool
 from sandbox.tools.tool import PointerEvent
 
 # Those in which hands may do everything.
@@ -95,3 +95,21 @@ def test_a_paused_drag_moves_the_thing_there_is_undone_at_once_and_verifies(name
     session.redo()
     session.apply_pending()
     assert session.world.position == pytest.approx(after, nan_ok=True)
+
+
+def test_a_paused_drag_only_pulls_where_the_level_lets_no_hand_move_things_at_once():
+    session, tool = session_and_tool("ferry")
+    before = session.world.position.copy()
+    place, types, said = tuple(session.world.position[session.world.particle_slot("crate 1.4")].tolist()), [], set()
+    for kind, by in (("down", 0.0), ("move", 8.0), ("move", 16.0)):
+        response = tool.handle(PointerEvent(kind, (place[0] + by, place[1]), 0.05, paused=True), session.snapshot())
+        said.add(response.message)
+        for command, gesture in response.submissions:
+            types.append(command.type)
+            session.submit(command, gesture)
+            session.apply_pending()
+    assert types == ["grab", "move_grab", "move_grab"] and said == {TIME_STANDS, None} and not session.refusals
+    shown = shown_particles(session.world)
+    assert session.world.position[shown] == pytest.approx(before[shown])
+    session.advance()
+    assert session.world.position[shown] != pytest.approx(before[shown], abs=1e-06)

@@ -20,6 +20,7 @@ NEVER_NEGATIVE = frozenset(
         "broken_springs",
         "distance",
         "settled",
+        "held",
     ]
 )
 # What is known of a pinned particle.

@@ -1,25 +1,15 @@
-"""Rules that can never fire, and counters that no rule changes."""
+"""Rules that can never fire, counters that no rule changes, and goals that anything wins."""
 
 from collections.abc import Iterator
 
+from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.items import Item, Selection
-from sandbox.editor.lint.finding import Finding, Rule
+from sandbox.editor.lint.checks import NEVER_NEGATIVE
+from sandbox.editor.lint.finding import Finding, Remedy, Rule
 from sandbox.editor.rule_text import named_zones
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.rules.rule import QuestionDef
-
-# Metrics that are never below zero.
-_NEVER_NEGATIVE = (
-    "strain",
-    "kinetic_energy",
-    "max_speed",
-    "speed",
-    "non_finite",
-    "broken_springs",
-    "distance",
-    "settled",
-)
 
 
 def hopeless_rules(level: Level, scene: Scene) -> Rule:
@@ -46,6 +36,16 @@ def idle_counters(level: Level) -> Rule:
     yield None
 
 
+def open_goals(level: Level) -> Rule:
+    """A goal that is won by whatever hands do, as they may do everything."""
+    if level.leaves_all_open:
+        text = "Whoever pauses puts things where they win: say in Hands, on the page Level, what hands may do"
+        pulling = {"may": ("grab",), "bodies": level.hands and level.hands.bodies}
+        remedy = Remedy("Let hands only pull", lambda document: set_level_field(document, "hands", pulling))
+        yield Finding("warning", text, frozenset(), None, remedy)
+    yield None
+
+
 def _fault(level: Level, scene: Scene, question: QuestionDef, counted: set[str]) -> str | None:
     """Why a question never holds; None where nothing says so."""
     if question.none:
@@ -58,11 +58,12 @@ def _fault(level: Level, scene: Scene, question: QuestionDef, counted: set[str])
     if question.touches is not None and not level.has_contacts:
         return "nothing touches in this level; turn Contacts on, on the page Level"
     if question.counter is not None and question.counter not in counted:
-        start = next(counter.start for counter in level.counters if counter.id == question.counter)
+        # What hands have left changes without rules.
+        start = next((counter.start for counter in level.counters if counter.id == question.counter), None)
         low, high = _bounds(question)
-        if not low <= start <= high:
+        if start is not None and not low <= start <= high:
             return f'no rule counts "{question.counter}", and it starts at {start:g}'
-    if question.metric in _NEVER_NEGATIVE and question.at_most is not None and question.at_most < 0.0:
+    if question.metric in NEVER_NEGATIVE and question.at_most is not None and question.at_most < 0.0:
         return "what it measures is never below 0"
     low, high = _bounds(question)
     return "its bounds contradict each other" if low > high else _pinned(scene, question)

@@ -123,7 +123,7 @@ def _sentence(level: Level, question: QuestionDef, index: int) -> list[Property]
         made.append(asked)
     elif asks == "counter":
         made.append(asked)
-        word("counter", _choice("Counter", tuple(each.id for each in level.counters), "The counter."), question.counter)
+        word("counter", _choice("Counter", level.counter_names, "The counter."), question.counter)
         made += _bounds(question, index, "")
     elif asks == "key":
         made.append(asked)
@@ -349,7 +349,7 @@ def _choices_of(level: Level, field: str) -> tuple[str, ...] | None:
     if field in ("cut", "body"):
         return tuple(body.id for body in level.bodies)
     if field == "count":
-        return tuple(counter.id for counter in level.counters)
+        return level.counter_names
     return tuple(part.name for part in actuators(level)) if field == "drive" else None
 
 

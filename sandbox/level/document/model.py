@@ -403,9 +403,24 @@ class Level(Description):
         return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
     @property
+    def has_goal(self) -> bool:
+        """Whether a rule of the level wins it."""
+        return any(action.win is not None for rule in self.rules for action in rule.then)
+
+    @property
+    def leaves_all_open(self) -> bool:
+        """Whether it has a goal and lets hands do everything: then whoever puts things where they win has won."""
+        return self.has_goal and (self.hands is None or self.hands.may is None)
+
+    @property
     def has_water(self) -> bool:
         """Whether there is water in the level."""
         return any(zone.water is not None for zone in self.zones)
+
+    @property
+    def counter_names(self) -> tuple[str, ...]:
+        """The names of counters, in the order of a world: its own, and what hands have left of each budget."""
+        return (*(each.id for each in self.counters), *(() if self.hands is None else self.hands.counter_names))
 
     def material(self, name: str) -> "Material | None":
         """The material of that name, the default one even where the level does not list it; None: there is none."""

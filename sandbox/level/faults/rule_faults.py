@@ -49,11 +49,11 @@ def rule_faults(level: Level, layout: Layout) -> Iterator[Fault]:
         layout,
         tuple(zone.id for zone in level.zones),
         tuple(things),
-        tuple(counter.id for counter in level.counters),
+        level.counter_names,
         tuple(part.name for part in actuators(level)),
         len(level.springs),
     )
-    yield from _repeated("counters", "counter", names.counters)
+    yield from _repeated("counters", "counter", [counter.id for counter in level.counters])
     yield from _repeated("rules", "rule", [rule.id for rule in level.rules])
     for index, rule in enumerate(level.rules):
         path = f"rules.{index}"

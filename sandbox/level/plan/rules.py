@@ -12,7 +12,7 @@ from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.plan.plan import Plan
-from sandbox.level.rules.player_limits import MEANINGS, PlayerLimits
+from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.level.rules.rule import WALLS, QuestionDef, RuleDef
 from sandbox.physics import rules
 from sandbox.physics.arrays import Slots
@@ -26,7 +26,7 @@ from sandbox.physics.zones import BOX, CIRCLE, POLYGON, Zones
 _KINDS = {
     "x": rules.CENTRE_X, "y": rules.CENTRE_Y, "speed": rules.SPEED, "distance": rules.DISTANCE,
     "inside": rules.INSIDE, "max_speed": rules.FASTEST, "strain": rules.STRAIN, "kinetic_energy": rules.MOTION,
-    "broken_springs": rules.BROKEN, "non_finite": rules.UNSOUND, "settled": rules.SETTLED,
+    "broken_springs": rules.BROKEN, "non_finite": rules.UNSOUND, "settled": rules.SETTLED, "held": rules.BROKEN,
     "all": rules.ALL, "any": rules.ANY, "none": rules.NOT,
 }  # fmt: skip
 _OF_SPRINGS = ("strain", "broken_springs")
@@ -55,8 +55,7 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
 
 
 def _add_hands(world: World, hands: PlayerLimits) -> None:
-    names = [f"{MEANINGS[deed].remaining_words} left" for deed in hands.budgets]
-    _append(world, Family.COUNTER, names, counter=[most + 0.0 for most in hands.budgets.values()])
+    _append(world, Family.COUNTER, hands.counter_names, counter=[most + 0.0 for most in hands.budgets.values()])
     count = len(world.counter)
     kinds = sorted(CODES, key=CODES.__getitem__)
     budgets = [hands.budget_of(kind) for kind in kinds]
@@ -105,7 +104,7 @@ class _Maker:
     def __init__(self, world: World, level: Level, plan: Plan, slots: Slots) -> None:
         self._world, self._level, self._plan, self._slots = world, level, plan, slots
         self._zones = [zone.id for zone in level.zones]
-        self._counters = [counter.id for counter in level.counters]
+        self._counters = level.counter_names
         self.keys = rule_keys(level)
         self._things = _things(level, plan)
         self._terms: list[_Term] = []
@@ -164,6 +163,10 @@ class _Maker:
             low = usual
         if metric in _OF_SPRINGS:
             return _Term(kind, self._springs(asked.body), low=low, high=high)
+        if metric == "held":
+            # A hand holds something by a spring: as many are gone as hands are empty.
+            hands = [slot for slot in range(self._world.spring_count) if self._world.is_grab_spring(slot)]
+            return _Term(kind, hands, low=len(hands) - high, high=len(hands) - low)
         other = 0
         if kind == rules.SETTLED:
             other = len(self.settling)

@@ -95,6 +95,11 @@ class PlayerLimits(Description):
         """How often hands may do what is counted, in the order of their counters, which are the last of a world."""
         return {deed: most for deed, most in self.at_most if most is not None}
 
+    @property
+    def counter_names(self) -> tuple[str, ...]:
+        """The names of the counters of budgets, in their order."""
+        return tuple(f"{MEANINGS[deed].remaining_words} left" for deed in self.budgets)
+
     def budget_of(self, kind: str) -> str:
         """The budget that a command of that type needs; nothing where it needs none."""
         return next((deed for deed in self.budgets if kind in MEANINGS[deed].counting), "")

@@ -93,7 +93,7 @@ class QuestionDef(Description):
     )
     at_least: float | None = Field(
         default=None,
-        description="Lower bound. Without bounds, `inside` has 0, and `settled` 1.",
+        description="Lower bound. Without bounds, `inside` has 0, and `settled` and `held` 1.",
         json_schema_extra=unit("the metric's") | empty("no bound"),
     )
 

@@ -21,6 +21,7 @@ const METRICS = {
     return Math.min(x - left, right - x, y - bottom, top - y);
   })),
   settled: (gauge, check) => gauge.still(check),
+  held: ({ world }) => Array.from({ length: world.hands.count }, (_, k) => k).filter((k) => world.isHeld(k)).length,
   max_speed: (gauge, check) => most(gauge.speeds(check)),
   kinetic_energy: (gauge, check) => gauge.energy(check),
   strain: (gauge, check) => most(gauge.strains(check)),

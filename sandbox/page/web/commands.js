@@ -179,6 +179,12 @@ export class Commands {
     if (answer <= -size) throw new Refusal(this.#words(reasons[Math.floor(-answer / size)], type, named(-answer % size)));
   }
 
+  /** Whether the level lets hands give a type of commands. refused: of each type, as state has it.
+   * @type {(type: string, refused: ArrayLike<unknown>) => boolean} */
+  lets(type, refused) {
+    return !refused.length || !refused[this.#about.codeOf[type]];
+  }
+
   /** Words for why a type of command is refused, of a name or number.
    * @type {(reason: number, type: string, name?: string | number, ...further: string[]) => string} */
   #words(reason, type, name = '', ...further) {

@@ -291,21 +291,29 @@ export class Hands {
         this.maker.begin(point, touched ?? free);
       }
     }
-    else if (free !== null || (touched !== null && this.isStill())) this.#take(pointer, touched ?? free ?? -1, free, event);
+    else if (free !== null || (touched !== null && this.#canCarry)) this.#take(pointer, touched ?? free ?? -1, free, event);
     else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
   }
 
-  /** Take hold of a particle that is free; while time stands, of the body of one that is touched, to put it elsewhere.
+  /** Take hold of a particle that is free; while time stands, of the body of one that is touched, to put it elsewhere,
+   * where the level lets hands do it.
    * @type {(pointer: Pointer, touched: number, free: number | null, event: Pressed) => void} */
   #take(pointer, touched, free, { pointerType }) {
-    if (this.isStill()) Object.assign(pointer, { kind: 'carry', carried: touched, gesture: this.run.newGesture() });
+    if (this.#canCarry) Object.assign(pointer, { kind: 'carry', carried: touched, gesture: this.run.newGesture() });
     else if (free !== null) {
       pointer.hand = this.hold(free, pointer.point, pointer.within);
       if (pointer.hand !== null) pointer.kind = 'hold';
+      else if (this.isStill()) pointer.kind = 'done';
+      if (pointer.hand !== null && this.isStill()) this.say(HANDS.TIME_STANDS);
     }
     const particle = pointer.kind === 'hold' && free !== null ? free : touched;
-    if (pointer.kind !== 'pan') this.speak(`Holding ${this.#thing(particle)}.`);
+    if (pointer.kind === 'carry' || pointer.kind === 'hold') this.speak(`Holding ${this.#thing(particle)}.`);
     if (pointerType !== 'mouse') pointer.timer = setTimeout(() => this.#ask(pointer, particle), LONG);
+  }
+
+  get #canCarry() {
+    const { world } = this.run;
+    return this.isStill() && world.commands.lets('move_body', world.view('state.deed_refused'));
   }
 
   /** Put the body that a pointer carries elsewhere, as far as the pointer has gone.

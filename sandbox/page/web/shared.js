@@ -35,6 +35,7 @@ export const HANDS = {
   AT_LIMIT: 0.99,
   PICK_RADIUS: 14,
   UNITS: [[1000000000, 'GN'], [1000000, 'MN'], [1000, 'kN'], [1, 'N'], [0.001, 'mN']],
+  TIME_STANDS: 'Time stands: here a hand only pulls, once time goes on (Space).',
 };
 export const GAMEPAD = {
   ACROSS: [['a', 'd'], ['left', 'right']],

@@ -189,6 +189,11 @@ def carry_out(pointer: Any, giver: int, name: str, values: Mapping[str, Any], wo
     return numbers
 
 
+def lets_hands(state: StateArrays, name: str) -> bool:
+    """Whether the level lets hands give a command of CODES."""
+    return not len(state.deed_refused) or not state.deed_refused[CODES[name]]
+
+
 def check_fields(name: str, giver: int, values: Mapping[str, Any]) -> None:
     """Whether that is a command of KINDS and somebody who gives it, with all that it is told. Raises ValueError."""
     whole_from("giver", giver, 0, command.PROGRAM)
