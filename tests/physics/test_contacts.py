@@ -312,3 +312,22 @@ def test_a_large_jelly_rests_on_the_ground_by_the_same_contacts():
     run(w, scaled(90, 10))
     assert w.position[:, 1].min() == pytest.approx(0.025, abs=1e-3)
     assert np.abs(w.velocity).max() < 1e-3
+
+
+@every_solver
+@pytest.mark.parametrize("free", [0, 1, 4])
+def test_what_cannot_move_touches_nothing_that_cannot(solver, free):
+    # A pinned disc lies in a box of which some particles are free; and others lie on the ground.
+    w = world(GROUND, solver=solver)
+    add_jelly(w, (3.0, 0.6), size=(0.8, 0.8))
+    box = add_jelly(w, (0.0, 2.0), size=(0.8, 0.8))
+    for p in range(box.start + free, box.stop):
+        w.pin(p)
+    disc = add_discs(w, [(0.03, 2.05)], radius=0.15)
+    w.pin(disc)
+    for _ in range(60):
+        step(w)
+        contacts = last_contacts(w)
+        ends = np.stack([contacts.particle, contacts.end_a, contacts.end_b], axis=1)
+        assert (np.where(ends >= 0, w.inverse_mass[ends], 0.0).sum(axis=1) > 0.0).all()
+    assert np.isfinite(w.position).all()

@@ -78,7 +78,15 @@ def add_contact(
     count: int, contacts: Contacts, p: int, feature: int, a: int, b: int, share: float, nx: float, ny: float,
     gap: float, surface: int, colliders: Colliders,
 ) -> int:  # fmt: skip
-    """Append a contact of particle p if there is room; the number of contacts then, counted on where there is none."""
+    """Append a contact of particle p if there is room; the number of contacts then, counted on where there is none.
+
+    What cannot move touches nothing that cannot.
+    """
+    moves = colliders.inverse_mass[p]
+    moves += colliders.inverse_mass[a] if a >= 0 else 0.0
+    moves += colliders.inverse_mass[b] if b >= 0 else 0.0
+    if moves == 0.0:
+        return count
     if count < contacts.particle.shape[0]:
         contacts.particle[count] = p
         contacts.feature[count] = feature
