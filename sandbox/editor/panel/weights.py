@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from sandbox.editor.document import Document, empty_level
-from sandbox.editor.edits.weighing import mass_of, weighing
+from sandbox.editor.edits.fields import change_items
+from sandbox.editor.edits.weighing import mass_of, masses_for
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.panel.field_info import FieldInfo
 from sandbox.editor.panel.property import Property, in_range, same
@@ -89,7 +90,7 @@ def _areas(level: Level, things: Mapping[Item, BodyDef | ParticleDef]) -> list[f
     room = 1.0 + float(world.radius.max())
     low, high = (world.position.min(axis=0) - room).tolist(), (world.position.max(axis=0) + room).tolist()
     world = build_world(replaced(dry, zones=(ZoneDef(id="water", box=(*low, *high), water=WaterDef(density=1.0)),)))
-    ids = [part.id for part in (*bodies, *balls)]
+    ids = [*(part.id for part in bodies), *(part.id for part in balls)]
     owners = [ids.index(part.id) for part in free]
     moving = world.inverse_mass > 0.0
     return [significant(lift_of(world, np.flatnonzero((world.owner == owner) & moving)), DIGITS) for owner in owners]
@@ -112,5 +113,10 @@ def _weigh(
     value: float,
 ) -> Document:
     for item, part in things.items():
-        document = weighing(document, item, part, in_range(about, value) * per[item])
+        for field, masses in masses_for(part, in_range(about, value) * per[item]).items():
+            document = change_items(document, [item], field, partial(_give, masses))
     return document
+
+
+def _give(value: Any, _: Definition) -> Any:
+    return value
