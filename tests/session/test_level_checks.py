@@ -5,7 +5,7 @@ from typing import get_args
 
 import pytest
 
-from sandbox.level.checks import METRICS, HoldDef, Metric, promise_text
+from sandbox.level.checks import METRICS, CheckDef, HoldDef, Metric, judge, promise_text, value_text
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import parse_level
@@ -213,3 +213,11 @@ def test_the_check_of_a_file_says_what_overlaps_and_what_sinks(tmp_path):
     assert sinks == '"slab" would sink in "pool": its water bears 40% of the weight'
     assert overlap.startswith("2 pairs of bodies overlap at the start, by up to 0.1 m (")
     assert said.data["start"] == [sinks, overlap] and said.passed
+
+
+def test_the_digits_of_what_was_measured_show_on_which_side_of_its_bound_it_is():
+    check = CheckDef(name="far", metric="x", body="slab", at_least=-3.0)
+    assert [value_text(check, value, 4) for value in (-3.00001, -2.99999, -3.0, -2.5, float("nan"))] == [
+        "-3.00001", "-3", "-3", "-2.5", "nan",
+    ]  # fmt: skip
+    assert judge(check, -3.0000000001).text.endswith("is -3.0000000001, wanted at least -3")
