@@ -718,10 +718,10 @@ def test_the_weight_of_a_body_is_typed_as_one_step_and_the_panel_says_that_it_fl
     def shown():
         return {name: each.value for name, each in form(driver).properties.items() if name.startswith("weight")}
 
-    assert shown()["weight.floats"] == "sinks: the water bears 38% of its weight"
+    assert shown()["weight.floats"] == "sinks: 38% is borne"
     driver.fill(entry(driver, "weight.density"), "6")
     assert shown() == {
-        "weight.mass": 7.5, "weight.density": 6.0, "weight.floats": "floats with 0.30 m under water",
+        "weight.mass": 7.5, "weight.density": 6.0, "weight.floats": "floats, 0.30 m under",
     }  # fmt: skip
     assert driver.editor.history.labels[1:] == ["Density"]
     driver.key(pygame.K_z, pygame.KMOD_CTRL)

@@ -58,9 +58,9 @@ def test_density_is_mass_by_what_water_cannot_enter_and_sets_the_mass():
 
 
 def test_the_panel_says_whether_a_body_floats_and_how_deep_and_nothing_of_what_is_in_no_water():
-    assert found(chosen("raft"))["weight.floats"].value == "sinks: the water bears 38% of its weight"
+    assert found(chosen("raft"))["weight.floats"].value == "sinks: 38% is borne"
     light = found(chosen("raft"))["weight.density"].set(chosen("raft"), 6.0)
-    assert found(light)["weight.floats"].value == "floats with 0.30 m under water"
+    assert found(light)["weight.floats"].value == "floats, 0.30 m under"
     assert "weight.floats" not in found(chosen("rope"))
 
 

@@ -29,6 +29,7 @@ from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, P
 _OUTLINES = ("polyline", "polygon", "box", "circle")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
+    "Mass": ("weight", "mass", "particle_mass", "end_mass", "hub_mass"),
     "Springs": ("material", "firmness", "rest_length"),
     "Drive": ("drive", "hydraulic", "motor"),
     "Look": ("look", "water"),
@@ -42,7 +43,6 @@ _SECTIONS = {
         "rolls",
         "rolling",
     ),
-    "Mass": ("weight", "mass", "particle_mass", "end_mass", "hub_mass"),
     "Start": ("pin", "pinned", "velocity", "spin"),
     "Shape": ("area", "inflation", "bending"),
     "More": ("masses", "gravity_scale", "cut", "velocities", "pose", "touches_mount", "group", "extras"),

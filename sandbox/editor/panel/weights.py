@@ -32,12 +32,13 @@ _MASS = FieldInfo(
     tooltip="Mass of the whole body, shared by its particles.",
 )
 _DENSITY = FieldInfo(
-    "number", "Density", "kg/m^2", *MASS_RANGE,
+    "number", "Density", "kg/m²", *MASS_RANGE,
     tooltip="Mass of a square metre of what water cannot enter. What has less than the water floats.",
 )  # fmt: skip
 _FLOATS = FieldInfo(
     "text", "In water",
-    tooltip="As it lies now, with what it is joined to, in the water that it is in or above. What is tall turns over.",
+    tooltip="How deep it lies in the water that it is in or above, or what share of its weight that bears. As it is "
+    "drawn, with what it is joined to; what is tall turns over.",
 )  # fmt: skip
 
 
@@ -71,8 +72,8 @@ def in_water(level: Level, item: Item) -> str:
     if found is None:
         return ""
     if found.depth is None:
-        return f"sinks: the water bears {found.borne:.0%} of its weight"
-    return f"floats with {found.depth:.2f} m under water"
+        return f"sinks: {found.borne:.0%} is borne"
+    return f"floats, {found.depth:.2f} m under"
 
 
 def _size(part: Definition) -> int:
