@@ -14,7 +14,7 @@ from sandbox.editor.panel.field_info import FieldInfo
 from sandbox.editor.panel.property import Property, in_range, same
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level, ParticleDef, Settings, WaterDef, ZoneDef
-from sandbox.level.format.limits import MASS_RANGE
+from sandbox.level.format.limits import BODY_RADIUS, MASS_RANGE
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef
@@ -23,7 +23,7 @@ from sandbox.physics.analysis.beginning import draught_of, lift_of, parts_of
 # Digits of what is shown.
 DIGITS = 6
 # Worlds of more particles take so long to make that a person waits for them; then nothing is said.
-LARGEST = 2_000
+LARGEST = 1_000
 _MASS = FieldInfo(
     "number",
     "Whole mass",
@@ -87,9 +87,11 @@ def _areas(level: Level, things: Mapping[Item, BodyDef | ParticleDef]) -> list[f
     balls = [part for part in free if isinstance(part, ParticleDef)]
     dry = replaced(empty_level(), materials=level.materials, settings=Settings(gravity=(0.0, -1.0)))
     dry = replaced(dry, bodies=tuple(bodies), particles=tuple(balls))
-    world = build_world(dry)
-    room = 1.0 + float(world.radius.max())
-    low, high = (world.position.min(axis=0) - room).tolist(), (world.position.max(axis=0) + room).tolist()
+    places = np.concatenate([*(expansion(part).position for part in bodies), *([part.position] for part in balls)])
+    room = 1.0 + max(
+        part.radius if isinstance(part, ParticleDef) else part.particle_radius or BODY_RADIUS for part in free
+    )
+    low, high = (places.min(axis=0) - room).tolist(), (places.max(axis=0) + room).tolist()
     world = build_world(replaced(dry, zones=(ZoneDef(id="water", box=(*low, *high), water=WaterDef(density=1.0)),)))
     ids = [*(part.id for part in bodies), *(part.id for part in balls)]
     owners = [ids.index(part.id) for part in free]
