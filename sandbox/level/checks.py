@@ -96,6 +96,8 @@ PROMISES = {
     ("broken_springs", -math.inf, 0.0): "no spring{of} breaks",
     ("inside", 0.0, math.inf): "{owner} is inside the box",
 }
+# Digits of a measured value, and those that tell any two numbers apart.
+DIGITS, EXACT = 6, 17
 # Fields that only some metrics take.
 SUBJECTS = ("particle", "other", "body", "box")
 
@@ -220,13 +222,21 @@ def promise_text(check: CheckDef) -> str:
     )  # fmt: skip
 
 
+def value_text(check: CheckDef, value: float, digits: int) -> str:
+    """A measured value with that many digits, or with as many as show on which side of a bound it is."""
+    fits = excess(check, value) <= 0.0
+    texts = (f"{value:.{count}g}" for count in range(digits, EXACT + 1))
+    return next((text for text in texts if (excess(check, float(text)) <= 0.0) == fits), f"{value:.{EXACT}g}")
+
+
 def judge(check: CheckDef, value: float, at: float | None = None) -> CheckResult:
     """The result of a check for a value measured at a time [s]. A value that is not a number fails."""
     passed = excess(check, value) <= 0.0
     when = check.after if at is None else at
-    measured = f"is {value:.6g}"
+    text = value_text(check, value, DIGITS)
+    measured = f"is {text}"
     if check.always or check.eventually:
-        measured = f"is at {'worst' if check.always else 'best'} {value:.6g}, after {when:g} s"
+        measured = f"is at {'worst' if check.always else 'best'} {text}, after {when:g} s"
     text = (
         f"{check.name}: {'holds' if passed else 'FAILS'}: {subject_text(check)} {time_text(check)} {measured}, "
         f"wanted {expected_text(check)}"

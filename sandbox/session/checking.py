@@ -1,7 +1,7 @@
 """Checks level files: stability, checks, and whether the solution beside a level wins it; and golden files."""
 
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -9,8 +9,12 @@ from typing import Any
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level
+from sandbox.level.plan.surfaces import zones_with_water
 from sandbox.level.reading.files import LevelError, level_path, read_level
+from sandbox.physics.analysis.beginning import overlap_text, overlaps, sinking, sinking_text
 from sandbox.physics.analysis.stability import report
+from sandbox.physics.step import step
+from sandbox.physics.world import World
 from sandbox.session.check_run import checks_as_they_end
 from sandbox.session.commands import CommandError
 from sandbox.session.compare.rollback import roll_back_level
@@ -89,7 +93,8 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
         level = read_level(path)
     except LevelError as error:
         return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
-    stability = report(build_world(level))
+    world = build_world(level)
+    stability, beginning = report(world), tuple(_beginning(level, world))
     timed = _timed(level)
     results, goal = [result for result, _ in timed], try_goal(level, Path(path))
     again = None if rollback is None else roll_back_level(level, rollback)
@@ -98,6 +103,7 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
         f"  stability  {stability.text}",
         f"  in a single pass Cs = Cd would be stable up to {stability.proven_limit:.3g} proven, "
         f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
+        *(f"  start      {line}" for line in beginning),
         *(f"  check      {result.text}" for result in results),
         *([f"  goal       {goal.text}"] if goal else []),
         *([f"  hands      {OPEN}"] if level.leaves_all_open else []),
@@ -107,6 +113,7 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     passed = passed and (again is None or again.found is None)
     data: dict[str, Any] = {
         "file": name, "result": "passed" if passed else "failed", "level": level.name, "stability": asdict(stability),
+        "start": list(beginning),
         "checks": [{**_as_data(result), "wall_seconds": wall} for result, wall in timed],
         "wall_seconds": time.perf_counter() - start,
     }  # fmt: skip
@@ -118,6 +125,18 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     if again is not None:
         data["rollback"] = {"passed": again.found is None, "ticks": again.ticks, "text": str(again)}
     return LevelReport(finite(data), lines, passed=passed)
+
+
+def _beginning(level: Level, world: World) -> Iterator[str]:
+    """What the beginning of a run shows that its author may not have meant, in sentences; it takes the first tick."""
+    pools = zones_with_water(level)
+    for sinks in sinking(world):
+        if sinks is not None:
+            yield sinking_text(world, *sinks, pools[sinks[1].pool].id)
+    step(world)
+    found = overlaps(world)
+    if found:
+        yield overlap_text(world, found)
 
 
 def _check_golden(name: str, start: float) -> LevelReport:

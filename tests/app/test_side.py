@@ -8,11 +8,13 @@ from hypothesis import strategies as st
 from sandbox.app.edit.side.checks import Trial
 from sandbox.app.edit.side.side import PAGES
 from sandbox.app.widgets.rows import RowList
+from sandbox.editor.document import empty_level
 from sandbox.editor.edits.additions import add_object
 from sandbox.editor.items import Item
 from sandbox.level.document.canonical import level_text
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.reading.files import parse_level, read_level
 from tests.app.conftest import small_level
 
@@ -705,3 +707,22 @@ def test_a_finding_that_is_ignored_stays_away_until_all_are_asked_for(edit):
     click_row(driver, page.list, len(page.findings))
     driver.frames(60)
     assert first in [found.text for found in page.findings]
+
+
+def test_the_weight_of_a_body_is_typed_as_one_step_and_the_panel_says_that_it_floats(edit):
+    box = JellyDef(type="jelly", id="raft", shape=BoxShape(box=(2.5, 0.5)), spacing=0.25, position=(0.0, 1.0))
+    pool = ZoneDef(id="pool", box=(-3.0, -2.0, 3.0, 0.0), water={})
+    driver = edit(replaced(empty_level(), bodies=(box,), zones=(pool,)))
+    choose(driver, Item("body", "raft"))
+
+    def shown():
+        return {name: each.value for name, each in form(driver).properties.items() if name.startswith("weight")}
+
+    assert shown()["weight.floats"] == "sinks: 38% is borne"
+    driver.fill(entry(driver, "weight.density"), "6")
+    assert shown() == {
+        "weight.mass": 7.5, "weight.density": 6.0, "weight.floats": "floats, 0.30 m under",
+    }  # fmt: skip
+    assert driver.editor.history.labels[1:] == ["Density"]
+    driver.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert shown()["weight.mass"] == 33.0

@@ -16,6 +16,7 @@ from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import Snap, snap
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
+from sandbox.level.kinds.bodies import expansion
 from sandbox.level.reading.parse import parse_level
 
 REACH = 0.1
@@ -154,11 +155,18 @@ def test_options_stay_for_the_next_drawing_and_adjust_counts_from_what_fits(empt
 def test_an_option_out_of_range_is_refused_in_one_line_and_changes_nothing(empty):
     drawing = TOOLS["rope"].drawing()
     before = drawing.options
-    for name, value in (("segments", 0), ("segments", 2.5), ("particle_mass", -1.0), ("particle_mass", None)):
+    for name, value in (("segments", 0), ("segments", 2.5), ("mass", -1.0), ("slack", None)):
         with pytest.raises(EditError) as refused:
             drawing.set_option(name, value)
         assert "\n" not in str(refused.value)
     assert drawing.options == before
+
+
+@pytest.mark.parametrize("tool", ["rope", "box", "wheel", "bridge", "girder", "ring", "web"])
+def test_the_mass_of_a_tool_is_that_of_the_whole_body_at_any_size(tool, empty):
+    for end in ((3.0, 1.0), (6.0, 4.0)):
+        body = last_body(drawn(tool, empty, (0.0, 0.0), end, mass=12.0))
+        assert expansion(body).mass.sum() == pytest.approx(12.0, rel=1e-11)
 
 
 def test_what_is_too_large_is_refused_in_one_line_and_the_ghost_says_why(empty):
@@ -424,7 +432,7 @@ def test_a_material_that_a_level_does_not_have_is_the_default_one(empty):
 
 
 def test_steps_of_options_go_through_round_values_and_end_at_the_limits():
-    mass, slack = described(RopeOptions())["particle_mass"], described(RopeOptions())["slack"]
+    mass, slack = described(RopeOptions())["mass"], described(RopeOptions())["slack"]
     links = described(RopeOptions())["segments"]
     up = [0.7]
     while up[-1] < 100.0:

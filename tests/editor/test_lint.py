@@ -25,6 +25,7 @@ from sandbox.level.document.model import (
     SpringDef,
     TerrainDef,
     WallsDef,
+    ZoneDef,
 )  # fmt: skip
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.format.quantities import replaced
@@ -431,6 +432,23 @@ def test_what_terrain_lies_below_does_not_fall_away_and_what_it_lies_beside_does
     assert len(texts(upward)) == 2
 
 
+def test_what_sinks_in_a_pool_is_found_and_what_floats_is_not():
+    box = {"bodies": (cube("slab", 0.0, 1.0),), "zones": (ZoneDef(id="pool", box=(-5.0, -5.0, 5.0, 0.0), water={}),)}
+    (finding,) = found(level_of(**box))
+    assert finding.text == '"slab" would sink in "pool": its water bears 40% of the weight; make it lighter'
+    assert finding.items == {Item("body", "slab")}
+    light = replaced(box["bodies"][0], particle_mass=0.1)
+    assert texts(level_of(**box | {"bodies": (light,)})) == []
+
+
+def test_boxes_on_each_other_overlap_in_one_line_of_the_level():
+    boxes = tuple(cube(f"box {k}", 0.0, 0.55 + k) for k in range(6))
+    (finding,) = [each for each in found(level_of(bodies=boxes, terrain=(GROUND,), contacts=ContactsDef()))
+                  if "overlap" in each.text]  # fmt: skip
+    assert finding.text.startswith("5 pairs of bodies overlap at the start, by up to 0.1 m (")
+    assert finding.severity == "hint" and finding.items == {Item("body", box.id) for box in boxes}
+
+
 def test_discs_that_overlap_are_found_where_they_touch_and_nothing_joins_them():
     pair = [ParticleDef(id=name, position=(x, 0.0), radius=0.5) for name, x in (("a", 0.0), ("b", 0.4))]
     level = level_of(particles=tuple(pair), contacts=ContactsDef(), settings=Settings(gravity=(0.0, 0.0)))
@@ -439,7 +457,7 @@ def test_discs_that_overlap_are_found_where_they_touch_and_nothing_joins_them():
         replaced(level, contacts=None),
         replaced(level, springs=(SpringDef(a="a", b="b"),)),
         replaced(level, particles=(pair[0], replaced(pair[1], collides=False))),
-        replaced(level, particles=(pair[0], replaced(pair[1], position=(0.8, 0.0)))),
+        replaced(level, particles=(pair[0], replaced(pair[1], position=(0.95, 0.0)))),
     )
     assert [text for each in others for text in texts(each)] == []
 

@@ -425,9 +425,20 @@ def test_a_metric_brings_bounds_of_its_own(level, metric):
     assert said == "at most -3 is gone" and (check.at_least, check.at_most) == (10.0, None)
 
 
+def test_choosing_from_a_menu_what_is_chosen_already_changes_nothing(level):
+    tried = set()
+    for item in items_of(level):
+        document = Document(level, frozenset([item]))
+        for each in (each for section in properties(document) for each in section.properties):
+            if each.about.kind == "choice" and each.editable:
+                assert each.set(document, each.value) is document
+                tried.add(each.field)
+    assert {"firmness", "shape", "mesh"} <= tried
+
+
 def test_a_new_check_is_of_what_is_selected_or_else_that_nothing_breaks(level):
-    assert promise_text(add_check(chosen(level, "rope")).level.checks[1]) == "x of rope is at least 2 m"
-    assert promise_text(add_check(chosen(level, "nail")).level.checks[1]) == "x of nail is at least 6 m"
+    assert promise_text(add_check(chosen(level, "rope")).level.checks[1]) == "x of rope is at least 1 m"
+    assert promise_text(add_check(chosen(level, "nail")).level.checks[1]) == "x of nail is at least 5 m"
     assert promise_text(add_check(Document(level)).level.checks[1]) == "no spring breaks"
 
 

@@ -49,3 +49,48 @@ def test_touches_are_never_met_where_nothing_touches_and_a_counter_that_is_count
     assert found([{"when": FAR}, counting]) == []
     assert [each.text for each in idle_counters(document([]).level) if each] != []
     assert [each for each in idle_counters(document([counting]).level) if each] == []
+
+
+@pytest.mark.parametrize(
+    ("by", "once", "when", "said"),
+    [
+        (1.0, True, {"counter": "score", "at_least": 5.0}, 'rules count "score" up to 2 at most'),
+        (-1.0, True, {"counter": "score", "at_most": -5.0}, 'rules count "score" down to -2 at most'),
+        (-1.0, False, {"counter": "score", "at_least": 5.0}, 'rules count "score" up to 0 at most'),
+        (1.0, False, {"counter": "score", "at_least": 5.0}, None),
+        (3.0, True, {"counter": "score", "at_least": 5.0}, None),
+    ],
+)
+def test_a_counter_that_is_asked_for_more_than_rules_can_count_is_found(by, once, when, said):
+    counting = {"when": {"key": "g"}, "once": once, "then": [{"count": "score", "by": by}]}
+    texts = found([{"when": when}, counting, counting])
+    assert len(texts) == (said is not None) and all(said in text for text in texts)
+
+
+def test_a_body_that_is_larger_than_the_zone_that_it_is_to_be_inside_is_found():
+    def asking(size):
+        block = {"type": "jelly", "id": "block", "shape": {"box": [size, 0.3]}, "spacing": 0.15, "position": [0, 3]}
+        when = {"metric": "inside", "body": "block", "zone": "slot"}
+        zone = {"id": "slot", "box": [0, 0, 0.4, 0.4]}
+        return found([{"when": when}], bodies=[block], zones=[zone], springs=[])
+
+    (text,) = asking(2.0)
+    assert '"block" is 2 m long, and slot is 0.57 m across' in text
+    assert asking(0.45) == []
+
+
+@pytest.mark.parametrize(
+    ("win", "lose", "is_late"),
+    [
+        ({"time": 20.0}, {"time": 10.0}, True),
+        ({"all": [{"time": 20.0}, LOW]}, {"any": [{"time": 10.0}, LOW]}, True),
+        ({"any": [{"time": 20.0}, LOW]}, {"time": 10.0}, False),
+        ({"time": 20.0}, {"all": [{"time": 10.0}, LOW]}, False),
+        ({"none": [{"time": 20.0}]}, {"time": 10.0}, False),
+        ({"time": 10.0}, {"time": 10.0}, False),
+    ],
+)
+def test_a_loss_that_comes_before_any_win_is_found(win, lose, is_late):
+    texts = found([{"when": win, "then": [{"win": "Done"}]}, {"when": lose, "then": [{"fail": "Late"}]}])
+    late = 'No run is won: "rule 1" loses it by 10 s, and "rule 0" wins at 20 s at the earliest'
+    assert texts == ([late] if is_late else [])

@@ -5,11 +5,12 @@ from typing import get_args
 
 import pytest
 
-from sandbox.level.checks import METRICS, HoldDef, Metric, promise_text
+from sandbox.level.checks import METRICS, CheckDef, HoldDef, Metric, judge, promise_text, value_text
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import parse_level
 from sandbox.session.check_run import HeldKeys, checks_as_they_end, run_checks
+from sandbox.session.checking import check_level
 from sandbox.session.session import Session
 from sandbox.session.sweep.grid import SweepRequest
 from sandbox.session.sweep.running import run_case
@@ -197,3 +198,26 @@ def test_a_sweep_measures_checks_that_hold_keys_as_they_are_measured_by_themselv
     level = cart({**x, "at_least": 0.9, "hold": [{"key": "d", "during": [0, 3]}]}, {**x, "at_most": 0.1})
     *_, drives, stays = run_case(SweepRequest(level_text(level), ("cs",), 60, None), (1.0,))
     assert (drives, stays) == (1, 1)
+
+
+def test_the_check_of_a_file_says_what_overlaps_and_what_sinks(tmp_path):
+    def box(name, x, y):
+        return {"type": "jelly", "id": name, "shape": {"box": [1, 1]}, "position": [x, y], "spacing": 0.25}
+
+    zone = {"id": "pool", "box": [-9, -2, -4, 0], "water": {}}
+    file = tmp_path / "stack.json"
+    written = {**LEVEL, "format": "spring-sandbox/level", "version": 4, "terrain": [], "zones": [zone]}
+    file.write_text(json.dumps(written | {"bodies": [*(box(f"b{k}", 0, k) for k in range(3)), box("slab", -6, 1)]}))
+    said = check_level(str(file))
+    sinks, overlap = [line.split(maxsplit=1)[1] for line in said.lines if line.startswith("  start")]
+    assert sinks == '"slab" would sink in "pool": its water bears 40% of the weight'
+    assert overlap.startswith("2 pairs of bodies overlap at the start, by up to 0.1 m (")
+    assert said.data["start"] == [sinks, overlap] and said.passed
+
+
+def test_the_digits_of_what_was_measured_show_on_which_side_of_its_bound_it_is():
+    check = CheckDef(name="far", metric="x", body="slab", at_least=-3.0)
+    assert [value_text(check, value, 4) for value in (-3.00001, -2.99999, -3.0, -2.5, float("nan"))] == [
+        "-3.00001", "-3", "-3", "-2.5", "nan",
+    ]  # fmt: skip
+    assert judge(check, -3.0000000001).text.endswith("is -3.0000000001, wanted at least -3")

@@ -9,9 +9,9 @@ from sandbox.editor.tools.drawing_options import (
     LineOptions,
     count_option,
     flag_option,
-    mass_option,
     material_option,
     size_option,
+    whole_mass_option,
 )
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -28,7 +28,8 @@ class TrussOptions(LineOptions):
 
     segments: int | None = count_option("cells", "Number of cells; empty = cells of about 0.5 m.", 1)
     height: float | None = size_option("height", "Height; empty = square or equilateral cells.")
-    particle_mass: float = mass_option(1.0)
+    particle_mass: float = 1.0
+    mass: float | None = whole_mass_option()
     material: str = material_option("steel")
     pin_start: bool = flag_option(True, "pin start", "Pin the start, unless it joins a particle.")
     pin_end: bool = flag_option(True, "pin end", "Pin the end, unless it joins a particle.")

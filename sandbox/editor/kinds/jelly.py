@@ -10,7 +10,13 @@ from typing import Any, ClassVar
 from sandbox.editor.document import EditError
 from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
-from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option, sag_option
+from sandbox.editor.tools.drawing_options import (
+    BodyOptions,
+    count_option,
+    material_option,
+    sag_option,
+    whole_mass_option,
+)
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -36,7 +42,8 @@ class JellyOptions(BodyOptions):
     """A jelly of any shape; cells None: 8 across, fewer where it is long and thin."""
 
     cells: int | None = count_option("cells", "Cells across the shorter side; empty = 8, fewer in long shapes.", 1)
-    particle_mass: float = mass_option(0.1)
+    particle_mass: float = 0.1
+    mass: float | None = whole_mass_option()
     material: str = material_option("jelly")
     # Soft, and yet it stands: on a fine grid its material alone would let it lie flat.
     sag: float | None = sag_option(5.0)

@@ -9,10 +9,10 @@ from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, len
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
     count_option,
-    mass_option,
     material_option,
     number_option,
     sag_option,
+    whole_mass_option,
 )
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -34,7 +34,8 @@ class RingOptions(BodyOptions):
         1.2, "inflation", "Air inside: the area it tries to have, times its own; empty = no air.",
         high=INFLATION_LIMIT, empty="no air",
     )  # fmt: skip
-    particle_mass: float = mass_option(0.1)
+    particle_mass: float = 0.1
+    mass: float | None = whole_mass_option()
     material: str = material_option("rubber")
     sag: float | None = sag_option(5.0)
 

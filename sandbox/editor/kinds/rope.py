@@ -12,6 +12,7 @@ from sandbox.editor.tools.drawing_options import (
     mass_option,
     material_option,
     number_option,
+    whole_mass_option,
 )
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -32,7 +33,8 @@ class RopeOptions(LineOptions):
     slack: float = number_option(
         0.0, "slack", "How much longer it is than the distance of its ends, 0.1 = 10 %.", "", *SLACK_RANGE
     )
-    particle_mass: float = mass_option(1.0)
+    particle_mass: float = 1.0
+    mass: float | None = whole_mass_option()
     end_mass: float | None = mass_option(None, "end mass", "Mass of the last particle; empty = the same as the others.")
     material: str = material_option("steel")
     pin_start: bool = flag_option(True, "pin start", "Pin the start, unless it joins a particle.")

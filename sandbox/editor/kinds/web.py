@@ -5,7 +5,13 @@ from typing import Any, ClassVar
 
 from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
-from sandbox.editor.tools.drawing_options import BodyOptions, count_option, flag_option, mass_option, material_option
+from sandbox.editor.tools.drawing_options import (
+    BodyOptions,
+    count_option,
+    flag_option,
+    material_option,
+    whole_mass_option,
+)
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.web import WebDef
@@ -21,7 +27,8 @@ class WebOptions(BodyOptions):
 
     spokes: int = count_option("spokes", "Number of spokes.", 3, 12)
     rings: int | None = count_option("rings", "Number of rings; empty = about 0.25 m apart.", 1)
-    particle_mass: float = mass_option(0.1)
+    particle_mass: float = 0.1
+    mass: float | None = whole_mass_option()
     material: str = material_option("rubber")
     pin_rim: bool = flag_option(True, "pin rim", "Pin the outermost ring.")
 

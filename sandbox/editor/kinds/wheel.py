@@ -14,6 +14,7 @@ from sandbox.editor.tools.drawing_options import (
     material_option,
     sag_option,
     size_option,
+    whole_mass_option,
 )
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -31,7 +32,8 @@ class RimOptions(BodyOptions):
 
     segments: int | None = count_option("spokes", "Number of spokes; empty = about 0.5 m of rim each, at least 16.", 3)
     thickness: float | None = size_option("thickness", "Thickness of the rim; empty = a quarter of the radius.")
-    particle_mass: float = mass_option(1.0)
+    particle_mass: float = 1.0
+    mass: float | None = whole_mass_option()
     material: str = material_option("rubber")
     # Round under ten times its weight as well.
     sag: float | None = sag_option(0.15)

@@ -11,7 +11,6 @@ from sandbox.editor.items import Item
 from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
-from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
 from sandbox.physics.marks import TERRAIN_GROUP
 
@@ -26,8 +25,6 @@ ROOM = 1e-3
 EDGES = 64
 # More rolling resistance than this keeps heaps from coming to rest.
 MOST_ROLLING = 0.05
-# Discs larger than those of bodies that are held against all others, at most.
-DISCS = 2_000
 
 
 def buried_particles(level: Level, scene: Scene) -> Rule:
@@ -97,38 +94,6 @@ def _moved(item: Item, dx: float, dy: float) -> Callable[[Document], Document]:
     return out
 
 
-def overlapping_discs(level: Level, scene: Scene) -> Rule:
-    """Pairs of items whose discs lie in each other at the start, where they touch and nothing joins them."""
-    if not level.has_contacts:
-        return
-    first, count = scene.first_of_weld, len(scene.items)
-    large = np.flatnonzero(scene.radius > BODY_RADIUS)[:DISCS]
-    joined = _keys(first[scene.particle_a], first[scene.particle_b], len(first))
-    yield None
-    reported: set[int] = set()
-    for slot in large.tolist():
-        apart = scene.position - scene.position[slot]
-        reach = scene.radius + scene.radius[slot]
-        into = reach - np.hypot(*apart.T) > DEEP * np.minimum(scene.radius, scene.radius[slot])
-        into &= (scene.particle_item != scene.particle_item[slot]) & ~(scene.pinned & scene.pinned[slot])
-        others = np.flatnonzero(into & (first != first[slot]))
-        others = others[scene.collision.meet(others, slot)]
-        others = others[~np.isin(_keys(first[others], first[slot], len(first)), joined)]
-        for other in others.tolist():
-            a, b = sorted((int(scene.particle_item[slot]), int(scene.particle_item[other])))
-            if a * count + b in reported:
-                continue
-            reported.add(a * count + b)
-            text = (
-                f'"{scene.names(slot)}" and "{scene.names(other)}" overlap at the start, and will be pushed apart; '
-                "move one away, or join them"
-            )
-            both = frozenset([scene.items[a], scene.items[b]])
-            many = "{count} pairs overlap at the start, and will be pushed apart; move them, or join them"
-            yield Finding("warning", text, both, place_of(scene, slot), many=many)
-        yield None
-
-
 def turning_in_vain(level: Level, scene: Scene) -> Rule:
     """Loose particles with a rolling resistance that shakes heaps, or with a spin though springs or pins hold them."""
     held = scene.pinned.copy()
@@ -149,8 +114,3 @@ def turning_in_vain(level: Level, scene: Scene) -> Rule:
             many = "{count} particles are held and do not turn; their spin is lost"
             yield Finding("hint", text, frozenset([item]), place_of(scene, slot), many=many)
     yield None
-
-
-def _keys(a: Slots, b: Slots | int, count: int) -> Slots:
-    """One number for each pair of particles, the same in either order."""
-    return np.asarray(np.minimum(a, b) * count + np.maximum(a, b))

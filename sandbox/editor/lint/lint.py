@@ -8,8 +8,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sandbox.editor.lint.beginning import beginnings
 from sandbox.editor.lint.checks import checks_without_hands, hopeless_checks
-from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
+from sandbox.editor.lint.contacts import buried_particles, turning_in_vain
 from sandbox.editor.lint.finding import (
     GROUND,
     Finding,
@@ -52,10 +53,10 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         overlapping_particles(scene),
         crossing_bodies(level, scene),
         buried_particles(level, scene),
-        overlapping_discs(level, scene),
         turning_in_vain(level, scene),
         buckling_columns(level, scene),
         water_in_water(level),
+        beginnings(level, scene),
     )
     return itertools.chain.from_iterable(listed(rule) for rule in rules)
 

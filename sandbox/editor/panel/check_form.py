@@ -22,6 +22,8 @@ _WHEN = {"after": "once, after", "eventually": "at some moment", "always": "all 
 _WINDOWS = ("always", "eventually")
 # How long [s] a window is that nobody has set.
 _WINDOW = 10.0
+# How far [m] what a new check measures may at least go to the left: rounding and a settling body pass it.
+LEEWAY = 0.1
 _PICKS: dict[str, Pick] = {"particle": "particle", "other": "particle", "body": "body", "box": "box"}
 _SUBJECT_TITLES = {"other": "To", "particle": "Of particle", "body": "Of body"}
 _BOUNDS = {"at_least": "at_most", "at_most": "at_least"}
@@ -96,9 +98,11 @@ def add_check(document: Document) -> Document:
     bodies, loose = chosen_bodies(level, document.selection), chosen_particles(level, document.selection)
     if bodies:
         x = float(expansion(bodies[0]).position[:, 0].mean())
-        check = CheckDef(name=name, metric="x", body=bodies[0].id, at_least=float(math.floor(x)))
+        check = CheckDef(name=name, metric="x", body=bodies[0].id, at_least=float(math.floor(x - LEEWAY)))
     elif loose:
-        check = CheckDef(name=name, metric="x", particle=loose[0].id, at_least=float(math.floor(loose[0].position[0])))
+        check = CheckDef(
+            name=name, metric="x", particle=loose[0].id, at_least=float(math.floor(loose[0].position[0] - LEEWAY))
+        )
     else:
         check = CheckDef(name=name, metric="broken_springs", at_most=0.0)
     return set_checks(document, [*level.checks, check])

@@ -17,6 +17,7 @@ from sandbox.editor.panel.field_info import FieldInfo, Pick, fields_of
 from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.editor.panel.typed import number_text
+from sandbox.editor.panel.weights import weight_properties
 from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
 from sandbox.level.document.schema import TITLES
 from sandbox.level.format.quantities import Point
@@ -28,6 +29,7 @@ from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, P
 _OUTLINES = ("polyline", "polygon", "box", "circle")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
+    "Mass": ("weight", "mass", "particle_mass", "end_mass", "hub_mass"),
     "Springs": ("material", "firmness", "rest_length"),
     "Drive": ("drive", "hydraulic", "motor"),
     "Look": ("look", "water"),
@@ -41,7 +43,6 @@ _SECTIONS = {
         "rolls",
         "rolling",
     ),
-    "Mass": ("mass", "particle_mass", "end_mass", "hub_mass"),
     "Start": ("pin", "pinned", "velocity", "spin"),
     "Shape": ("area", "inflation", "bending"),
     "More": ("masses", "gravity_scale", "cut", "velocities", "pose", "touches_mount", "group", "extras"),
@@ -78,6 +79,7 @@ def properties(document: Document) -> tuple[Section, ...]:
         made += _outline_properties(selection, [part for part in parts if isinstance(part, TerrainDef)])
     if len(parts) == 1 and isinstance(parts[0], ZoneDef):
         made += _zone_properties(selection, parts[0])
+    made = [*weight_properties(level, chosen_items(level, selection)), *made]
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)

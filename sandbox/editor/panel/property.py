@@ -82,9 +82,14 @@ class Property:
         return self.label or self.about.title
 
     def set(self, document: Any, value: Any) -> Any:
-        """The document with another value; an axis that is None and a flag that is not given stay. Raises EditError."""
+        """The document with another value; an axis that is None and a flag that is not given stay. Raises EditError.
+
+        What is chosen from a menu a second time changes nothing.
+        """
         if self.write is None:
             raise EditError(f"{self.about.title} cannot be changed here")
+        if self.about.kind == "choice" and value == self.value and isinstance(document, Document):
+            return document
         return self.write(document, value)
 
     def typed(self, text: str, axis: int = 0) -> Any:

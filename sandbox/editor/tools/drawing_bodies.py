@@ -7,8 +7,9 @@ from typing import Any, Generic, TypeVar, cast
 
 from pydantic import ValidationError
 
-from sandbox.editor.document import Document, EditError, checked
+from sandbox.editor.document import Document, EditError, checked, validated
 from sandbox.editor.edits.placing import add_body
+from sandbox.editor.edits.weighing import masses_for
 from sandbox.editor.tools.drawing_options import BodyOptions, LineOptions
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
@@ -65,6 +66,8 @@ class BodyDrawing(Drawing[AnyBodyOptions], Generic[AnyBodyOptions]):
         except ValidationError as error:
             place, text = next(worded([dict(fault) for fault in error.errors()]))
             raise EditError(f"{place.replace('_', ' ')}: {text}") from None
+        if self.options.mass is not None:
+            body = validated(replaced(body, **masses_for(body, self.options.mass)))
         document = add_body(document, body)
         if self.options.sag is not None:
             document = firm(document, self.options.sag / 100.0)

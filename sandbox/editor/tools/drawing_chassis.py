@@ -34,9 +34,9 @@ MATERIALS = {
 
 @dataclass(frozen=True)
 class ChassisOptions(Options):
-    """Options of a chassis; both of its masses are those of particles."""
+    """Options of a chassis: masses of the frame and of each axle [kg]."""
 
-    mass: float = mass_option(3.0, text="Mass of each of the frame's eight particles.")
+    mass: float = mass_option(24.0, text="Mass of the whole frame.")
     axle_mass: float = mass_option(2.0, "axle mass", "Mass of each of the two axles.")
 
 
@@ -69,7 +69,7 @@ class ChassisDrawing(Drawing[ChassisOptions]):
         group = free_ids(taken_groups(level), ["vehicle"])[0]
         body = MeshDef(
             type="mesh", id=frame, particles=tuple(place(x, y) for x, y in FRAME), springs=(*CHORDS, *POSTS, *BRACES),
-            masses=(self.options.mass,) * len(FRAME), material="steel", group=group,
+            masses=(self.options.mass / len(FRAME),) * len(FRAME), material="steel", group=group,
         )  # fmt: skip
         particles, springs = [], []
         for name, (at, arm, shocks) in zip(axles, AXLES, strict=True):

@@ -38,9 +38,15 @@ def count_option(title: str, text: str, low: int, default: int | None = None) ->
     return option(default, replace(about, optional=True, empty="auto") if default is None else about)
 
 
-def mass_option(default: float | None, title: str = "mass", text: str = "Mass of each particle.") -> Any:
+def mass_option(default: float | None, title: str = "mass", text: str = "Mass of the particle.") -> Any:
     """A mass [kg]; None: as the others."""
     return number_option(default, title, text, "kg", *MASS_RANGE, empty="same" if default is None else "")
+
+
+def whole_mass_option() -> Any:
+    """The mass of a body [kg]; None: as many times that of a particle as it has particles."""
+    text = "Mass of the whole body. Empty = the more, the more particles it has."
+    return number_option(None, "mass", text, "kg", *MASS_RANGE, empty="auto")
 
 
 def sag_option(default: float | None) -> Any:
@@ -72,7 +78,9 @@ class Options:
 class BodyOptions(Options):
     """Options of a tool that draws a body: each has these among its own, in its own order."""
 
+    # That of a particle, where the mass of the whole is not set.
     particle_mass: float
+    mass: float | None
     material: str
     # Of those that have a firmness, in per cent.
     sag: float | None = None

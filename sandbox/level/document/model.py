@@ -326,7 +326,9 @@ class ZoneDef(Description):
         json_schema_extra=empty("none"),
     )
     water: WaterDef | None = Field(
-        default=None, description="Water in it; the zone is a box then.", json_schema_extra=empty("none")
+        default=None,
+        description="Water in it; the zone is a box then. What has less kg/m^2 than the water floats.",
+        json_schema_extra=empty("none"),
     )
     look: ZoneLook | None = Field(default=None, description="How it looks.", json_schema_extra=empty("automatic"))
     extras: Extras = Field(default_factory=dict)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.level.document.model import ContactsDef, Level, Material, NissenMaterial, ParticleDef
+from sandbox.level.document.model import ContactsDef, Level, Material, NissenMaterial, ParticleDef, ZoneDef
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import NO_HULL, Expansion
@@ -162,11 +162,16 @@ def mount_of(level: Level, wheel: int) -> frozenset[int]:
     return frozenset(mount - {wheel})
 
 
+def zones_with_water(level: Level) -> list[ZoneDef]:
+    """The zones that are pools of a level, in its order."""
+    return [zone for zone in level.zones if zone.water is not None and zone.box is not None]
+
+
 def water_of(level: Level) -> FloatRows:
     """The pools of a level, in the order of its zones."""
     pools = [
         Pool(zone.box, zone.water.density, zone.water.fast_drag, zone.water.slow_drag, zone.water.flow)
-        for zone in level.zones
+        for zone in zones_with_water(level)
         if zone.water is not None and zone.box is not None
     ]
     return pools_of(pools) if pools else NO_POOLS

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from sandbox.physics.arena import FIRST_ARENA, Arena, begin, lay_out
-from sandbox.physics.arrays import Floats, with_empty
+from sandbox.physics.arrays import Floats, Slots, with_empty
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
-from sandbox.physics.jit import Bundle, bundle, kernel, unpack
+from sandbox.physics.jit import Bundle, bundle, items_of, kernel, unpack
 from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
@@ -208,6 +208,12 @@ def water_energy(world: World) -> float:
     if not len(world.water):
         return 0.0
     return float(_energy_lifted(world.derived(_lay_out, of_hands=False), max(0.0, -world.settings.gravity[1])))
+
+
+def discs_in_water(world: World) -> Slots:
+    """The particles of a world with water that displace it by their own discs."""
+    place = items_of(world.derived(_lay_out, of_hands=False))
+    return np.asarray(place.water.disc)
 
 
 def _lay_out(world: World) -> Any:

@@ -12,7 +12,7 @@ from sandbox.app.widgets.form import Form
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
-from sandbox.level.checks import METRICS, CheckDef, CheckResult, held_text, promise_text, time_text
+from sandbox.level.checks import METRICS, CheckDef, CheckResult, held_text, promise_text, time_text, value_text
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.plan.actuators import driving_keys
@@ -20,6 +20,8 @@ from sandbox.session.check_run import checks_as_they_end
 
 # Part of the page that the list takes.
 LIST_PART = 0.38
+# Digits of what a check measured, as long as they show why it fails.
+SHOWN_DIGITS = 4
 NOTHING = "No checks yet. A check runs the level and says whether the car is past x = 12 after 8 s, for example."
 
 
@@ -139,5 +141,6 @@ def _row(check: CheckDef, result: CheckResult | None, is_running: bool, has_keys
         promise += ". Nobody pressed a key: hold one in the check"
     if result is None:
         return Row(check.name, f"running: {promise}" if is_running else promise, DISABLED)
-    verdict = f"{'holds' if result.passed else 'fails'} with {result.value:.4g} {METRICS[check.metric].unit}".rstrip()
+    value = value_text(check, result.value, SHOWN_DIGITS)
+    verdict = f"{'holds' if result.passed else 'fails'} with {value} {METRICS[check.metric].unit}".rstrip()
     return Row(check.name, f"{verdict}: {promise}", ACCENT if result.passed else DANGER)
