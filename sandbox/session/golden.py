@@ -4,6 +4,7 @@ A recording is equal in every bit or it is not; a golden file holds through a ch
 of a few lines, to be read in a review.
 """
 
+import codecs
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -111,7 +112,7 @@ class Golden:
 
 def read_golden(path: Path) -> Golden:
     """Read a golden file, its level and its commands. Raises GoldenError, LevelError and ReplayError."""
-    data = read_bytes(path)
+    data = read_bytes(path).removeprefix(codecs.BOM_UTF8)
     json_value(data, str(path))
     try:
         file = GoldenFile.model_validate_json(data)
