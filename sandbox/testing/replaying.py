@@ -67,6 +67,7 @@ def replay_test(config: pytest.Config, path: Path) -> Update | None:
     """Run a recording again as the options say; what changed where it was recorded again. Raises Failed."""
     try:
         golden = _golden(config, path)
+        golden.check_names(config)
         if config.getoption("--replay-update"):
             return _update(golden)
         if golden.refused:
@@ -108,7 +109,6 @@ class _Golden:
 
     def differing(self) -> Comparison | None:
         """Where its run differs, measured to the end. Raises ReplayError."""
-        self._check_names()
         if self.refused:
             return across_versions(self.replay, self.level)
         found = compare(self.replay, level=self.level)
@@ -137,17 +137,16 @@ class _Golden:
             if old and new and old != new
         ]
 
-    def _check_names(self) -> None:
+    def check_names(self, config: pytest.Config) -> None:
         """Raises ReplayError, with a remedy, where the commands name what the level does not have."""
         missing = [] if self.level is None else missing_names(self.replay, self.level)
         if self.level is None or not missing:
             return
         fresh = new_names(self.replay.level, self.level)
         known = f"; new there: {', '.join(fresh[:MOST_NAMED])}" if fresh else ""
-        example = shlex.quote(f"{missing[0]}=NEW")
         raise ReplayError(
             f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self._level_name} lacks{known}",
-            f"if that is called otherwise now: pytest --replay-update --replay-rename {example} {self.path.name}",
+            rename_hint(config, self.path, missing[0]),
         )
 
 
@@ -173,15 +172,38 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     smaller: list[str] = []
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
-    return Failed(*failure, *(pictures_of(config, found, path) if found else []), *smaller, _acceptance(config, path))
+    return Failed(
+        *failure, *(pictures_of(config, found, path) if found else []), *smaller, _way_out(config, path, found)
+    )
 
 
-def _acceptance(config: pytest.Config, path: Path) -> str:
-    folder, against = config.invocation_params.dir, config.getoption("--replay-against")
-    name = path.relative_to(folder) if path.is_relative_to(folder) else path
+def _named(config: pytest.Config, path: Path) -> str:
+    """A file as a command where pytest was started names it."""
+    folder = config.invocation_params.dir
+    return str(path.relative_to(folder) if path.is_relative_to(folder) else path)
+
+
+def rename_hint(config: pytest.Config, path: Path, missing: str) -> str:
+    """The command for what a level calls otherwise than a recording or a golden file does."""
+    command = ["pytest", "--replay-update", "--replay-rename", f"{missing}=NEW", _named(config, path)]
+    return f"if {missing} is called otherwise now: {shlex.join(command)}"
+
+
+def acceptance(config: pytest.Config, path: Path) -> str:
+    """The command that accepts what a recording or a golden file does now."""
+    against = config.getoption("--replay-against")
     options = [f"--replay-against={against}"] if against else []
     options += [f"--replay-rename={each}" for each in config.getoption("--replay-rename")]
-    return f"to accept: {shlex.join(['pytest', '--replay-update', *options, str(name)])}"
+    return f"to accept: {shlex.join(['pytest', '--replay-update', *options, _named(config, path)])}"
+
+
+def _way_out(config: pytest.Config, path: Path, found: Comparison | None) -> str:
+    """How to accept a run; one that a command ends early cannot be recorded."""
+    if found is None or found.distance is None or "the new run ends" not in found.distance.stopped:
+        return acceptance(config, path)
+    commands = f"{_named(config, path).partition('.replay')[0]}.commands.jsonl"
+    export = shlex.join(["sandbox", "export", _named(config, path), "--to", "commands", "-o", commands])
+    return f"to accept, edit its commands and record them again by `sandbox run --record`: {export}"
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
