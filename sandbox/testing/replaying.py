@@ -1,22 +1,21 @@
 """What the test of a recording does: run it again, tell and draw where it parts, or record it again."""
 
-import functools
 import json
-import os
 import shlex
 import tempfile
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from sandbox.level.document.model import Level
 from sandbox.level.format.writing import unfinished
-from sandbox.level.reading.files import LevelError, file_of, read_level, shipped_levels
+from sandbox.level.reading.files import LevelError, file_of, shipped_levels
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
+from sandbox.session.replay.nearest_level import NoLevelError, known_level, level_among, level_in, nearest
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
 from sandbox.session.replay.rerecord import (
@@ -220,33 +219,24 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
         place = (config.inipath.parent if config.inipath else config.rootpath) / set_down
     else:
         return _usual_level(config, replay)
-    if not place.is_dir():
-        return level_of(place)
-    return level_among(sorted(place.glob("*.json")), replay, str(place))
+    return _read(level_in, place, replay)
 
 
-def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
-    """The level of a recording among files: that of its file's name, or else of its title. Raises Failed."""
-    name, title, found = file_of(replay.level), replay.level.name, _fitting(files, replay)
-    if len(found) == 1:
-        return level_of(found[0])
-    if found:
-        called = name if found[0].name == name else repr(title)
-        same = f"{len(found)} levels are called {called}: {', '.join(map(str, found))}"
-    else:
-        known = f"neither {name} nor " if name else ""
-        same = f"there is {known}a level with the title {title!r}" if name else f"no level has the title {title!r}"
-    raise Failed(
-        f"{replay.source}: in {where} {same}",
-        f"name its file: pytest --replay-update --replay-against {shlex.quote(f'{where}/NAME.json')} "
-        f"{shlex.quote(replay.source)}",
-    )
+def _read(read: "Callable[..., Level]", *what: Any) -> Level:
+    """The level that a function reads. Raises Failed with its faults, and with the way out where there is none."""
+    try:
+        return read(*what)
+    except NoLevelError as error:
+        command = ["pytest", "--replay-update", "--replay-against", f"{error.folder}/NAME.json", what[1].source]
+        raise Failed(*error.faults, f"name its file: {shlex.join(command)}") from None
+    except LevelError as error:
+        raise Failed(*error.faults) from None
 
 
 def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
     """The level file of a project that a recording is of, the nearest; None: a shipped level. Raises Failed."""
     here, name = Path(replay.source).resolve(), file_of(replay.level)
-    found = _fitting(sorted({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}), replay)
+    found = nearest({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}, replay)
     if not found:
         if not name or _is_shipped(replay.level):
             return None
@@ -255,11 +245,9 @@ def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
             "folder levels there or around, nor among sandbox_levels",
             "to run recordings on the copies that they hold: sandbox_against = own",
         )
-    steps = [len(Path(os.path.relpath(path.parent, here.parent)).parts) for path in found]
-    nearest = [path for path, away in zip(found, steps, strict=True) if away == min(steps)]
-    if len(nearest) > 1 and any(replay.level == level_of(path) for path in nearest):
+    if len(found) > 1 and any(replay.level == level_of(path) for path in found):
         return replay.level
-    return level_among(nearest, replay, str(nearest[0].parent))
+    return _read(level_among, found, replay, found[0].parent)
 
 
 def _is_shipped(level: Level) -> bool:
@@ -267,33 +255,9 @@ def _is_shipped(level: Level) -> bool:
     return any(path.name == file_of(level) and level_of(path) == level for path in shipped_levels())
 
 
-def _fitting(files: Sequence[Path], replay: Replay) -> list[Path]:
-    """The files of the name of a recording's level, or else those of its title."""
-    name, title = file_of(replay.level), replay.level.name
-    named = [path for path in files if name and path.name == name]
-    return named or [path for path in files if title == _title_of(path)]
-
-
-def _title_of(path: Path) -> str | None:
-    """The title of a level file, None of one that cannot be read."""
-    try:
-        return _read_level(path, path.stat().st_mtime_ns).name
-    except (LevelError, OSError):
-        return None
-
-
-@functools.lru_cache(maxsize=256)
-def _read_level(path: Path, changed: int) -> Level:
-    """A level, read once as long as its file is not changed."""
-    return read_level(path)
-
-
 def level_of(path: Path) -> Level:
     """A level. Raises Failed with its faults."""
-    try:
-        return _read_level(path, path.stat().st_mtime_ns if path.is_file() else 0)
-    except LevelError as error:
-        raise Failed(*error.faults) from None
+    return _read(known_level, path)
 
 
 def with_solver(config: pytest.Config, level: Level) -> Level:
