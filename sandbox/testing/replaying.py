@@ -14,6 +14,8 @@ import pytest
 from sandbox.level.document.model import Level
 from sandbox.level.format.writing import unfinished
 from sandbox.level.reading.files import LevelError, file_of, shipped_levels
+from sandbox.session.checking import play_out
+from sandbox.session.commands import CommandError
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
 from sandbox.session.replay.nearest_level import NoLevelError, known_level, level_among, level_in, nearest
 from sandbox.session.replay.reader import read_replay
@@ -28,7 +30,7 @@ from sandbox.session.replay.rerecord import (
     with_settings,
 )
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.files import Failed, asked_renames, level_files, levels_around
+from sandbox.testing.files import SOLUTION, Failed, asked_renames, level_files, levels_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
     from sandbox.session.compare.comparison import Comparison
     from sandbox.session.replay.recording import Replay
 
+# What is done about a solution that is none any more.
+PLAY_AGAIN = "record a run that wins in its place, or edit the level so that this one does"
 # In place of a level: the copy that each recording has of its own.
 OWN = "own"
 # Names that are told of those that a level does not have, and of those that are new there.
@@ -115,12 +119,22 @@ class _Golden:
 
     def rename_lines(self) -> list[str]:
         """Lines that say which names have changed."""
-        return [f"{self._level_name}: {old} is called {new} now" for old, new in self.renames.items()]
+        return [f"{self.level_name}: {old} is called {new} now" for old, new in self.renames.items()]
 
     @property
-    def _level_name(self) -> str:
+    def level_name(self) -> str:
         """The name in messages of the level that a recording runs on."""
         return (file_of(self.level) if self.level is not None else "") or "level"
+
+    def stops_winning(self) -> bool:
+        """Whether it is the solution of a level that its commands won, and now do not."""
+        if self.level is None or not self.path.name.endswith(SOLUTION):
+            return False
+        try:
+            before, after = play_out(self.recorded, self.recorded.level), play_out(self.replay, self.level)
+        except CommandError:
+            return False
+        return before is not None and before.is_won and not (after is not None and after.is_won)
 
     def move_lines(self) -> list[str]:
         """Lines that say which title or file of the level has changed."""
@@ -131,7 +145,7 @@ class _Golden:
             "file": (file_of(self.recorded.level), file_of(self.level)),
         }
         return [
-            f"{self._level_name}: {what}: {old} -> {new}"
+            f"{self.level_name}: {what}: {old} -> {new}"
             for what, (old, new) in pairs.items()
             if old and new and old != new
         ]
@@ -144,7 +158,7 @@ class _Golden:
         fresh = new_names(self.replay.level, self.level)
         known = f"; new there: {', '.join(fresh[:MOST_NAMED])}" if fresh else ""
         raise ReplayError(
-            f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self._level_name} lacks{known}",
+            f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self.level_name} lacks{known}",
             rename_hint(config, self.path, missing[0]),
         )
 
@@ -172,7 +186,7 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
     return Failed(
-        *failure, *(pictures_of(config, found, path) if found else []), *smaller, _way_out(config, path, found)
+        *failure, *(pictures_of(config, found, path) if found else []), *smaller, _way_out(config, golden, found)
     )
 
 
@@ -196,10 +210,11 @@ def acceptance(config: pytest.Config, path: Path) -> str:
     return f"to accept: {shlex.join(['pytest', '--replay-update', *options, _named(config, path)])}"
 
 
-def _way_out(config: pytest.Config, path: Path, found: Comparison | None) -> str:
-    """How to accept a run; one that a command ends early cannot be recorded."""
+def _way_out(config: pytest.Config, golden: _Golden, found: Comparison | None) -> str:
+    """How to accept a run; one that a command ends early, or that wins no more, cannot be recorded."""
+    path = golden.path
     if found is None or found.distance is None or "the new run ends" not in found.distance.stopped:
-        return acceptance(config, path)
+        return PLAY_AGAIN if golden.stops_winning() else acceptance(config, path)
     commands = f"{_named(config, path).partition('.replay')[0]}.commands.jsonl"
     export = shlex.join(["sandbox", "export", _named(config, path), "--to", "commands", "-o", commands])
     return f"to accept, edit its commands and record them again by `sandbox run --record`: {export}"
@@ -287,6 +302,8 @@ def _update(golden: _Golden) -> Update | None:
     moved = [*golden.move_lines(), *(golden.rename_lines() if golden.is_renamed else [])]
     if found is None and not moved:
         return None
+    if golden.stops_winning():
+        raise Failed(f"{path.name}: not recorded again: it no longer wins {golden.level_name}", PLAY_AGAIN)
     fresh = unfinished(path, "".join(path.suffixes[-2:]))
     try:
         record_again(golden.replay, level or golden.replay.level, fresh)
