@@ -327,11 +327,10 @@ def shrunk_lines(
     if level is None:
         return ["smallest: only the build that recorded it knows the bits of other commands; --replay-against compares "
                 "with a level"]  # fmt: skip
-    from sandbox.session.shrink.failures import Diverges
     from sandbox.session.shrink.passes import short_json
-    from sandbox.session.shrink.shrinker import shrinker_of, write_recording
+    from sandbox.session.shrink.shrinker import shrinker_against, write_recording
 
-    shrinker = shrinker_of(replay, Diverges(level))
+    shrinker = shrinker_against(replay, level)
     if shrinker.seen is None:
         return ["smallest: what differs does so from the beginning, without any command"]
     for _ in shrinker.steps():
