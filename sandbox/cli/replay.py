@@ -36,7 +36,11 @@ class ReplayOptions:
     partial: bool = flag("verify what there is of a recording that is cut off")
     report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
     to_end: bool = flag("where it diverges, go on to the end: how far apart, and does it heal or grow?")
-    against: str | None = option(str, metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+    against: str | None = option(
+        str,
+        metavar="LEVEL|FOLDER",
+        help="run their commands on this level, or on the nearest of their level's name in a folder",
+    )
     rollback: int | None = option(
         count, metavar="N", help="at every tick also go back N ticks, by a snapshot, and compare when there again"
     )
@@ -56,7 +60,7 @@ class Verified:
 def verify_files(options: ReplayOptions) -> int:
     """Verify recordings, one after another as they were named. Raises Refused."""
     names = _recordings(options.files)
-    if options.against:
+    if options.against and not os.path.isdir(options.against):
         level_of(options.against)
     if options.report and (len(names) > 1 or options.report.suffix.lower() != PAGE):
         raise Refused("--report: is of one recording, into a file whose name ends in .html")
@@ -123,8 +127,8 @@ def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
     from sandbox.session.compare.comparison import compare
     from sandbox.session.compare.rollback import roll_back
 
-    level = level_of(options.against) if options.against else None
     replay = recording_of(name, options.partial)
+    level = _level_against(options.against, replay) if options.against else None
     worlds: deque[World] = deque(maxlen=1)
     with _progress(replay, shows) as bar:
         found = compare(replay, level=level, on_tick=worlds.append, progress=_onward(bar))
@@ -136,6 +140,17 @@ def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
         if again is not None:
             return _failed(name, again, f"rolled back {options.rollback} ticks, diverged at {again}")
     return _equal(name, replay, level or replay.level, worlds[0] if worlds else None, options.rollback)
+
+
+def _level_against(name: str, replay: "Replay") -> "Level":
+    """The level that --against names, a recording's own of a folder. Raises Refused."""
+    from sandbox.level.reading.files import LevelError
+    from sandbox.session.replay.nearest_level import level_in
+
+    try:
+        return level_in(Path(name), replay) if os.path.isdir(name) else level_of(name)
+    except LevelError as error:
+        raise Refused(*error.faults) from None
 
 
 def _progress(replay: "Replay", shows: bool) -> Progress:
@@ -162,12 +177,12 @@ def _equal(name: str, replay: "Replay", level: "Level", end: "World | None", rol
 def _diverged(name: str, found: "Comparison", options: ReplayOptions, shows: bool) -> Verified:
     from sandbox.session.compare.comparison import to_the_end
 
-    text, more = f"diverged at {found.divergence}", {}
+    text, more = "\n  ".join([f"diverged at {found.divergence}", *found.edits]), {}
     if options.to_end:
         with _progress(found.replay, shows) as bar:
             found = to_the_end(found, _onward(bar))
         distance = [*found.distance.lines_of_all(), found.distance.verdict()] if found.distance else []
-        text = "\n  ".join([text, *found.edits, *distance])
+        text = "\n  ".join([text, *distance])
     if options.report is not None:
         write_report(found, options.report)
     if found.distance:

@@ -41,7 +41,7 @@ class ShrinkOptions:
         help="the run on this level differs from the recorded one; with another failure: run on this level",
     )
     apart: float | None = option(
-        float, metavar="M", help="with --against: differs by this far, in place of the first bit that differs"
+        float, metavar="M", help="with --against: differs by this far; default: by 1 mm, or else in a bit"
     )
     output: Path | None = option(
         Path, "-o", metavar="OUT.replay.gz", help="default: the recording's name with .smallest, beside it"
@@ -52,8 +52,8 @@ class ShrinkOptions:
 
 def shrink(options: ShrinkOptions) -> int:
     """Make a failing recording as small as it gets."""
-    from sandbox.session.shrink.failures import FailureError
-    from sandbox.session.shrink.shrinker import shrinker_of
+    from sandbox.session.shrink.failures import Diverges, FailureError
+    from sandbox.session.shrink.shrinker import shrinker_against, shrinker_of
 
     replay = recording_of(options.file, partial=True)
     failure, level = _failure(options, replay)
@@ -61,7 +61,10 @@ def shrink(options: ShrinkOptions) -> int:
     if not output.name.endswith(RECORDING):
         raise Refused(f"-o: {str(output)!r}: the name of a recording ends in {RECORDING}")
     try:
-        shrinker = shrinker_of(replay, failure, level)
+        if isinstance(failure, Diverges) and failure.apart is None:
+            shrinker = shrinker_against(replay, failure.level)
+        else:
+            shrinker = shrinker_of(replay, failure, level)
     except FailureError as error:
         raise Refused(str(error)) from None
     if shrinker.seen is None:
@@ -224,10 +227,11 @@ def _identifier(name: str) -> str:
 def _lines(shrinker: "Shrinker", options: ShrinkOptions, took: float, stopped: bool) -> list[str]:
     from sandbox.session.shrink.passes import counted, short_json
 
-    assert shrinker.seen is not None
+    assert shrinker.seen is not None and shrinker.found is not None
     more = len(shrinker.smallest.lines) - MOST_SHOWN
     return [
         f"{options.file}: {shrinker.seen.failure}",
+        f"  in the recording: {shrinker.found}",
         f"  from  {shrinker.original.counts()}",
         f"  to    {shrinker.smallest.counts()}, by {shrinker.tries:,} runs in {took:.1f} s"
         + (", interrupted: more may go" if stopped else ""),
@@ -239,14 +243,15 @@ def _lines(shrinker: "Shrinker", options: ShrinkOptions, took: float, stopped: b
 
 
 def _data(shrinker: "Shrinker", options: ShrinkOptions, written: list[Path], stopped: bool) -> dict[str, Any]:
-    assert shrinker.seen is not None
+    assert shrinker.seen is not None and shrinker.found is not None
     names = ("gestures", "commands", "ticks")
     sizes = {
         when: dict(zip(names, (play.size[0], play.size[1], play.ticks), strict=True))
         for when, play in (("from", shrinker.original), ("to", shrinker.smallest))
     }
     return {
-        "file": options.file, "failure": str(shrinker.seen.failure), "text": shrinker.seen.text, **sizes,
+        "file": options.file, "failure": str(shrinker.seen.failure), "text": shrinker.seen.text,
+        "in_recording": shrinker.found.text, **sizes,
         "runs": shrinker.tries, "interrupted": stopped, "written": [str(path) for path in written],
     }  # fmt: skip
 

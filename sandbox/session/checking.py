@@ -22,7 +22,7 @@ from sandbox.session.golden import SUFFIX, GoldenError, differences, read_golden
 from sandbox.session.outcome import Outcome, outcome, outcome_data, outcome_text
 from sandbox.session.probe import finite
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
@@ -45,6 +45,14 @@ def solution_of(path: Path) -> Path:
     return path.with_name(f"{path.name.removesuffix('.json')}{SOLUTION_SUFFIX}")
 
 
+def play_out(replay: Replay, level: Level) -> Outcome | None:
+    """The outcome of a level by a recording's commands, until it is won or lost; None: neither. Raises CommandError."""
+    session = Session(level, script=replay.script)
+    while outcome(level, session.world) is None and session.tick < replay.ticks:
+        session.advance()
+    return outcome(level, session.world)
+
+
 def try_goal(level: Level, path: Path) -> GoalResult | None:
     """Run a level by the solution beside its file, until it is won or lost; None for a level without a goal."""
     if not level.has_goal:
@@ -54,12 +62,9 @@ def try_goal(level: Level, path: Path) -> GoalResult | None:
         return GoalResult(True, f"not tried: there is no {solution.name}", None)
     try:
         replay = read_replay(solution)
-        session = Session(level, script=replay.script)
-        while outcome(level, session.world) is None and session.tick < replay.ticks:
-            session.advance()
+        found = play_out(replay, level)
     except (ReplayError, CommandError) as error:
         return GoalResult(False, f"FAILS: {solution.name}: {error.faults[0]}", None)
-    found = outcome(level, session.world)
     if found is None:
         seconds = replay.ticks / level.settings.tick_rate
         return GoalResult(False, f"FAILS: not won in the {seconds:.2f} s of {solution.name}", None)

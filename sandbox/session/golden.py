@@ -4,10 +4,11 @@ A recording is equal in every bit or it is not; a golden file holds through a ch
 of a few lines, to be read in a review.
 """
 
+import codecs
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -24,7 +25,9 @@ from sandbox.session.check_run import run_checks
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.faults import plain_fault
 from sandbox.session.commands.records import ScriptLine
+from sandbox.session.replay import is_recording
 from sandbox.session.replay.reader import read_replay, read_script
+from sandbox.session.replay.rerecord import Renames, owner_of, renamed_name, renamed_record
 from sandbox.session.session import Session
 
 SUFFIX = ".golden.json"
@@ -60,11 +63,12 @@ class GoldenFile(BaseModel):
 
 
 class GoldenError(ValueError):
-    """A golden file that cannot be used; faults: one line each."""
+    """A golden file that cannot be used; faults: one line each; missing: a name that its level has not, or ""."""
 
-    def __init__(self, *faults: str) -> None:
+    def __init__(self, *faults: str, missing: str = "") -> None:
         super().__init__("\n".join(faults))
         self.faults = list(faults)
+        self.missing = missing
 
 
 @dataclass(frozen=True)
@@ -79,9 +83,9 @@ class Golden:
     def measured(self, level: Level | None = None) -> GoldenFile:
         """Run it, on its level or another; the same file with what came. Raises GoldenError."""
         level = level or self.level
-        faults = [*self._unknown_checks(level)]
+        faults = dict(self._unknown_checks(level))
         if faults:
-            raise GoldenError(*faults)
+            raise GoldenError(*faults.values(), missing=next(iter(faults)))
         numbers = {result.check.name: result.value for result in run_checks(level)} if self.file.values else {}
         endless = [name for name in self.file.values if not math.isfinite(numbers[name])]
         if endless:
@@ -89,11 +93,24 @@ class Golden:
         changed = {"places": self._places(level), "values": {name: numbers[name] for name in self.file.values}}
         return self.file.model_copy(update=changed)
 
-    def _unknown_checks(self, level: Level) -> Iterator[str]:
+    def carried_over(self, renames: Renames) -> "Golden":
+        """The same with other names of bodies, loose particles and checks, as far as the level lacks the old ones."""
+        level, script = self.level, self.script
+        known = {body.id for body in level.bodies} | {each.id for each in level.particles}
+        known |= {check.name for check in level.checks}
+        apt = {old: new for old, new in renames.items() if old not in known}
+        # A script is edited by hand: what it names is told.
+        if self.file.commands and is_recording(Path(self.file.commands)):
+            script = tuple(replace(line, record=renamed_record(line.record, apt)) for line in script)
+        places = {renamed_name(name, apt): points for name, points in self.file.places.items()}
+        values = {apt.get(name, name): value for name, value in self.file.values.items()}
+        return replace(self, file=self.file.model_copy(update={"places": places, "values": values}), script=script)
+
+    def _unknown_checks(self, level: Level) -> Iterator[tuple[str, str]]:
         names = [check.name for check in level.checks]
         for name in self.file.values:
             if name not in names:
-                yield f"{self.path}: values: the level has no check {name!r}{suggestion(name, names)}"
+                yield name, f"{self.path}: values: the level has no check {name!r}{suggestion(name, names)}"
 
     def _places(self, level: Level) -> dict[str, tuple[Point, ...]]:
         session, found = Session(level, script=self.script), {}
@@ -111,7 +128,7 @@ class Golden:
 
 def read_golden(path: Path) -> Golden:
     """Read a golden file, its level and its commands. Raises GoldenError, LevelError and ReplayError."""
-    data = read_bytes(path)
+    data = read_bytes(path).removeprefix(codecs.BOM_UTF8)
     json_value(data, str(path))
     try:
         file = GoldenFile.model_validate_json(data)
@@ -133,7 +150,7 @@ def _script(path: Path, file: GoldenFile, level: Level) -> tuple[ScriptLine, ...
     if file.commands is None:
         return ()
     named = path.parent / file.commands
-    script = read_replay(named).script if ".replay." in named.name else read_script(named)
+    script = read_replay(named).script if is_recording(named) else read_script(named)
     last = round(max(file.at, default=0.0) * level.settings.tick_rate)
     late = [line.tick for line in script if line.tick > last]
     if not script:
@@ -155,7 +172,8 @@ def _finder(world: World, name: str, source: str) -> tuple[list[int], list[float
         if not slots:
             names = [second for second, _ in world.particle_naming.second] + world.particle_names
             near = suggestion(name, names)
-            raise GoldenError(f"{source}: places: there is no particle or body {name!r}{near}") from None
+            fault = f"{source}: places: there is no particle or body {name!r}{near}"
+            raise GoldenError(fault, missing=owner_of(name)) from None
     return slots, world.mass[slots].tolist()
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.files import Failed, check_names, has_solution, marks_of, says_it_is_a_level
+from sandbox.testing.files import Failed, asked_renames, check_names, has_solution, marks_of, says_it_is_a_level
 
 if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
@@ -159,18 +159,23 @@ class GoldenItem(ReportedItem):
         from sandbox.level.format.level_error import LevelError
         from sandbox.session.golden import GoldenError, differences, read_golden, write_golden
         from sandbox.session.replay.recording import ReplayError
-        from sandbox.testing.replaying import Update, with_solver
+        from sandbox.testing.replaying import Update, acceptance, rename_hint, with_solver
 
         try:
-            golden = read_golden(self.path)
+            recorded = read_golden(self.path)
+            golden = recorded.carried_over(asked_renames(self.config))
             measured = golden.measured(with_solver(self.config, golden.level))
         except (GoldenError, LevelError, ReplayError) as error:
-            raise Failed(*error.faults) from None
-        found = differences(golden.file, measured)
+            missing = getattr(error, "missing", "")
+            raise Failed(*error.faults, *([rename_hint(self.config, self.path, missing)] if missing else [])) from None
+        old_names, new_names = ([*each.file.places, *each.file.values] for each in (recorded, golden))
+        pairs = zip(old_names, new_names, strict=True)
+        renamed = [f"{old} is called {new} now" for old, new in pairs if old != new]
+        found = [*renamed, *differences(golden.file, measured)]
         if not found:
             return
         if not self.config.getoption("--replay-update"):
-            raise Failed(*(f"{self.path.name}: {line}" for line in found), "to accept: pytest --replay-update")
+            raise Failed(*(f"{self.path.name}: {line}" for line in found), acceptance(self.config, self.path))
         try:
             write_golden(self.path, measured)
         except OSError as error:

@@ -1,22 +1,23 @@
 """What the test of a recording does: run it again, tell and draw where it parts, or record it again."""
 
-import functools
 import json
-import os
 import shlex
 import tempfile
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from sandbox.level.document.model import Level
 from sandbox.level.format.writing import unfinished
-from sandbox.level.reading.files import LevelError, file_of, read_level, shipped_levels
+from sandbox.level.reading.files import LevelError, file_of, shipped_levels
+from sandbox.session.checking import play_out
+from sandbox.session.commands import CommandError
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
+from sandbox.session.replay.nearest_level import NoLevelError, known_level, level_among, level_in, nearest
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
 from sandbox.session.replay.rerecord import (
@@ -29,7 +30,7 @@ from sandbox.session.replay.rerecord import (
     with_settings,
 )
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.files import Failed, asked_renames, level_files, levels_around
+from sandbox.testing.files import SOLUTION, Failed, asked_renames, level_files, levels_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from sandbox.session.compare.comparison import Comparison
     from sandbox.session.replay.recording import Replay
 
+# What is done about a solution that is none any more.
+PLAY_AGAIN = "record a run that wins in its place, or edit the level so that this one does"
 # In place of a level: the copy that each recording has of its own.
 OWN = "own"
 # Names that are told of those that a level does not have, and of those that are new there.
@@ -67,6 +70,7 @@ def replay_test(config: pytest.Config, path: Path) -> Update | None:
     """Run a recording again as the options say; what changed where it was recorded again. Raises Failed."""
     try:
         golden = _golden(config, path)
+        golden.check_names(config)
         if config.getoption("--replay-update"):
             return _update(golden)
         if golden.refused:
@@ -108,7 +112,6 @@ class _Golden:
 
     def differing(self) -> Comparison | None:
         """Where its run differs, measured to the end. Raises ReplayError."""
-        self._check_names()
         if self.refused:
             return across_versions(self.replay, self.level)
         found = compare(self.replay, level=self.level)
@@ -116,12 +119,22 @@ class _Golden:
 
     def rename_lines(self) -> list[str]:
         """Lines that say which names have changed."""
-        return [f"{self._level_name}: {old} is called {new} now" for old, new in self.renames.items()]
+        return [f"{self.level_name}: {old} is called {new} now" for old, new in self.renames.items()]
 
     @property
-    def _level_name(self) -> str:
+    def level_name(self) -> str:
         """The name in messages of the level that a recording runs on."""
         return (file_of(self.level) if self.level is not None else "") or "level"
+
+    def stops_winning(self) -> bool:
+        """Whether it is the solution of a level that its commands won, and now do not."""
+        if self.level is None or not self.path.name.endswith(SOLUTION):
+            return False
+        try:
+            before, after = play_out(self.recorded, self.recorded.level), play_out(self.replay, self.level)
+        except CommandError:
+            return False
+        return before is not None and before.is_won and not (after is not None and after.is_won)
 
     def move_lines(self) -> list[str]:
         """Lines that say which title or file of the level has changed."""
@@ -132,22 +145,21 @@ class _Golden:
             "file": (file_of(self.recorded.level), file_of(self.level)),
         }
         return [
-            f"{self._level_name}: {what}: {old} -> {new}"
+            f"{self.level_name}: {what}: {old} -> {new}"
             for what, (old, new) in pairs.items()
             if old and new and old != new
         ]
 
-    def _check_names(self) -> None:
+    def check_names(self, config: pytest.Config) -> None:
         """Raises ReplayError, with a remedy, where the commands name what the level does not have."""
         missing = [] if self.level is None else missing_names(self.replay, self.level)
         if self.level is None or not missing:
             return
         fresh = new_names(self.replay.level, self.level)
         known = f"; new there: {', '.join(fresh[:MOST_NAMED])}" if fresh else ""
-        example = shlex.quote(f"{missing[0]}=NEW")
         raise ReplayError(
-            f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self._level_name} lacks{known}",
-            f"if that is called otherwise now: pytest --replay-update --replay-rename {example} {self.path.name}",
+            f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self.level_name} lacks{known}",
+            rename_hint(config, self.path, missing[0]),
         )
 
 
@@ -173,15 +185,39 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     smaller: list[str] = []
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
-    return Failed(*failure, *(pictures_of(config, found, path) if found else []), *smaller, _acceptance(config, path))
+    return Failed(
+        *failure, *(pictures_of(config, found, path) if found else []), *smaller, _way_out(config, golden, found)
+    )
 
 
-def _acceptance(config: pytest.Config, path: Path) -> str:
-    folder, against = config.invocation_params.dir, config.getoption("--replay-against")
-    name = path.relative_to(folder) if path.is_relative_to(folder) else path
+def _named(config: pytest.Config, path: Path) -> str:
+    """A file as a command where pytest was started names it."""
+    folder = config.invocation_params.dir
+    return str(path.relative_to(folder) if path.is_relative_to(folder) else path)
+
+
+def rename_hint(config: pytest.Config, path: Path, missing: str) -> str:
+    """The command for what a level calls otherwise than a recording or a golden file does."""
+    command = ["pytest", "--replay-update", "--replay-rename", f"{missing}=NEW", _named(config, path)]
+    return f"if {missing} is called otherwise now: {shlex.join(command)}"
+
+
+def acceptance(config: pytest.Config, path: Path) -> str:
+    """The command that accepts what a recording or a golden file does now."""
+    against = config.getoption("--replay-against")
     options = [f"--replay-against={against}"] if against else []
     options += [f"--replay-rename={each}" for each in config.getoption("--replay-rename")]
-    return f"to accept: {shlex.join(['pytest', '--replay-update', *options, str(name)])}"
+    return f"to accept: {shlex.join(['pytest', '--replay-update', *options, _named(config, path)])}"
+
+
+def _way_out(config: pytest.Config, golden: _Golden, found: Comparison | None) -> str:
+    """How to accept a run; one that a command ends early, or that wins no more, cannot be recorded."""
+    path = golden.path
+    if found is None or found.distance is None or "the new run ends" not in found.distance.stopped:
+        return PLAY_AGAIN if golden.stops_winning() else acceptance(config, path)
+    commands = f"{_named(config, path).partition('.replay')[0]}.commands.jsonl"
+    export = shlex.join(["sandbox", "export", _named(config, path), "--to", "commands", "-o", commands])
+    return f"to accept, edit its commands and record them again by `sandbox run --record`: {export}"
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
@@ -198,33 +234,24 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
         place = (config.inipath.parent if config.inipath else config.rootpath) / set_down
     else:
         return _usual_level(config, replay)
-    if not place.is_dir():
-        return level_of(place)
-    return level_among(sorted(place.glob("*.json")), replay, str(place))
+    return _read(level_in, place, replay)
 
 
-def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
-    """The level of a recording among files: that of its file's name, or else of its title. Raises Failed."""
-    name, title, found = file_of(replay.level), replay.level.name, _fitting(files, replay)
-    if len(found) == 1:
-        return level_of(found[0])
-    if found:
-        called = name if found[0].name == name else repr(title)
-        same = f"{len(found)} levels are called {called}: {', '.join(map(str, found))}"
-    else:
-        known = f"neither {name} nor " if name else ""
-        same = f"there is {known}a level with the title {title!r}" if name else f"no level has the title {title!r}"
-    raise Failed(
-        f"{replay.source}: in {where} {same}",
-        f"name its file: pytest --replay-update --replay-against {shlex.quote(f'{where}/NAME.json')} "
-        f"{shlex.quote(replay.source)}",
-    )
+def _read(read: "Callable[..., Level]", *what: Any) -> Level:
+    """The level that a function reads. Raises Failed with its faults, and with the way out where there is none."""
+    try:
+        return read(*what)
+    except NoLevelError as error:
+        command = ["pytest", "--replay-update", "--replay-against", f"{error.folder}/NAME.json", what[1].source]
+        raise Failed(*error.faults, f"name its file: {shlex.join(command)}") from None
+    except LevelError as error:
+        raise Failed(*error.faults) from None
 
 
 def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
     """The level file of a project that a recording is of, the nearest; None: a shipped level. Raises Failed."""
     here, name = Path(replay.source).resolve(), file_of(replay.level)
-    found = _fitting(sorted({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}), replay)
+    found = nearest({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}, replay)
     if not found:
         if not name or _is_shipped(replay.level):
             return None
@@ -233,11 +260,9 @@ def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
             "folder levels there or around, nor among sandbox_levels",
             "to run recordings on the copies that they hold: sandbox_against = own",
         )
-    steps = [len(Path(os.path.relpath(path.parent, here.parent)).parts) for path in found]
-    nearest = [path for path, away in zip(found, steps, strict=True) if away == min(steps)]
-    if len(nearest) > 1 and any(replay.level == level_of(path) for path in nearest):
+    if len(found) > 1 and any(replay.level == level_of(path) for path in found):
         return replay.level
-    return level_among(nearest, replay, str(nearest[0].parent))
+    return _read(level_among, found, replay, found[0].parent)
 
 
 def _is_shipped(level: Level) -> bool:
@@ -245,33 +270,9 @@ def _is_shipped(level: Level) -> bool:
     return any(path.name == file_of(level) and level_of(path) == level for path in shipped_levels())
 
 
-def _fitting(files: Sequence[Path], replay: Replay) -> list[Path]:
-    """The files of the name of a recording's level, or else those of its title."""
-    name, title = file_of(replay.level), replay.level.name
-    named = [path for path in files if name and path.name == name]
-    return named or [path for path in files if title == _title_of(path)]
-
-
-def _title_of(path: Path) -> str | None:
-    """The title of a level file, None of one that cannot be read."""
-    try:
-        return _read_level(path, path.stat().st_mtime_ns).name
-    except (LevelError, OSError):
-        return None
-
-
-@functools.lru_cache(maxsize=256)
-def _read_level(path: Path, changed: int) -> Level:
-    """A level, read once as long as its file is not changed."""
-    return read_level(path)
-
-
 def level_of(path: Path) -> Level:
     """A level. Raises Failed with its faults."""
-    try:
-        return _read_level(path, path.stat().st_mtime_ns if path.is_file() else 0)
-    except LevelError as error:
-        raise Failed(*error.faults) from None
+    return _read(known_level, path)
 
 
 def with_solver(config: pytest.Config, level: Level) -> Level:
@@ -301,6 +302,8 @@ def _update(golden: _Golden) -> Update | None:
     moved = [*golden.move_lines(), *(golden.rename_lines() if golden.is_renamed else [])]
     if found is None and not moved:
         return None
+    if golden.stops_winning():
+        raise Failed(f"{path.name}: not recorded again: it no longer wins {golden.level_name}", PLAY_AGAIN)
     fresh = unfinished(path, "".join(path.suffixes[-2:]))
     try:
         record_again(golden.replay, level or golden.replay.level, fresh)
@@ -324,11 +327,10 @@ def shrunk_lines(
     if level is None:
         return ["smallest: only the build that recorded it knows the bits of other commands; --replay-against compares "
                 "with a level"]  # fmt: skip
-    from sandbox.session.shrink.failures import Diverges
     from sandbox.session.shrink.passes import short_json
-    from sandbox.session.shrink.shrinker import shrinker_of, write_recording
+    from sandbox.session.shrink.shrinker import shrinker_against, write_recording
 
-    shrinker = shrinker_of(replay, Diverges(level))
+    shrinker = shrinker_against(replay, level)
     if shrinker.seen is None:
         return ["smallest: what differs does so from the beginning, without any command"]
     for _ in shrinker.steps():

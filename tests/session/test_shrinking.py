@@ -27,7 +27,7 @@ from sandbox.session.commands.records import ScriptLine
 from sandbox.session.compare.rollback import RandomHands
 from sandbox.session.session import Session
 from sandbox.session.shrink.passes import Play
-from sandbox.session.shrink.shrinker import Shrinker, shrinker_of
+from sandbox.session.shrink.shrinker import Shrinker, shrinker_against, shrinker_of
 from tests.support.interrupts import interrupts
 from tests.support.planted import CASES, edited
 from tests.support.rope_level import rope_level
@@ -241,3 +241,60 @@ def test_a_play_says_where_it_parts_from_another():
     assert [line.tick for line in play.without_ticks(5, 10).lines] == [0, 5, 10]
     assert play.without_ticks(5, 10).parting(play) == 5
     assert shorter.size < play.without_ticks(5, 10).size < play.size
+
+
+def test_what_leaves_a_box_stays_the_same_thing_on_the_same_side(recorded, tmp_path, capsys):
+    def act(session):
+        if session.tick == 20:
+            session.submit(Push((4.0, 0.0), 3.0, (900.0, 0.0)))
+        if session.tick == 80:
+            session.submit(SetGravity((-30.0, 0.0)))
+
+    path = recorded(act=act, ticks=200)
+    assert find_failure(read_replay(path), Leaves((-1.5, -99.0, 5.6, 99.0), "soft")).failure.side == "left"
+    assert main(["shrink", str(path), "--leaves=-1.5,-99,5.6,99", "--processes", "1"]) == 0
+    told = capsys.readouterr().out
+    seen = find_failure(read_replay(path), Leaves((-1.5, -99.0, 5.6, 99.0)))
+    assert f"\n  in the recording: {seen}\n" in told and f"{seen.failure.thing} leaves the box" in told
+    smallest = find_failure(read_replay(tmp_path / "walk.smallest.replay.gz"), Leaves((-1.5, -99.0, 5.6, 99.0)))
+    assert smallest.failure == seen.failure
+    assert f'"{seen.failure.thing}", side="{seen.failure.side}")' in (tmp_path / "test_walk_smallest.py").read_text()
+
+
+def test_the_rule_that_loses_stays_the_same(tmp_path):
+    rules = [
+        {"id": side, "when": {"metric": "x", "particle": "rope.end", bound: at}, "then": [{"fail": side}]}
+        for side, bound, at in (("right", "at_least", 5.51), ("left", "at_most", 4.0))
+    ]
+    level = rope_level(rules=rules)
+    session = Session(level)
+    session.record_to(tmp_path / "run.replay.gz")
+    session.submit(SetGravity((200.0, -9.81)))
+    for _ in range(200):
+        session.advance()
+        if session.tick == 60:
+            session.submit(SetGravity((-50.0, 0.0)))
+    session.stop_recording()
+    shrinker = shrinker_of(read_replay(tmp_path / "run.replay.gz"), IsLost())
+    assert shrinker.seen.failure == IsLost("right") and "right" in str(shrinker.seen.failure)
+    smallest = shrunk(shrinker)
+    assert shrinker.seen.failure == IsLost("right") and len(smallest.lines) == 1
+    # By itself the rope falls to the left.
+    assert Shrinker(level, Play((), 200), IsLost()).seen.failure == IsLost("left")
+
+
+def test_on_an_edited_level_it_shrinks_to_what_people_see(recorded, tmp_path, capsys):
+    def act(session):
+        if session.tick == 100:
+            session.submit(Push((1.0, 3.0), 4.0, (900.0, 0.0)))
+
+    path = recorded(level=rope_level(), ticks=200, act=act)
+    weaker = edited(rope_level(), materials__rubber={"stiffness": 0.05, "damping": 0.1, "tension_limit": 2.0})
+    (tmp_path / "weaker.json").write_text(json.dumps(level_data(weaker)))
+    assert main(["shrink", str(path), "--against", str(tmp_path / "weaker.json"), "--processes", "1"]) == 0
+    told = capsys.readouterr().out
+    assert "a particle comes more than 0.001 m away from where it is on the other level" in told
+    assert "  in the recording: tick " in told and '"type": "push"' in told
+    # What nobody sees is told in its first bit.
+    other = edited(rope_level(), materials__rubber={"stiffness": 0.05, "damping": 0.1 + 1e-12})
+    assert shrinker_against(read_replay(path), other).seen.failure.apart is None

@@ -94,3 +94,21 @@ def test_a_level_with_a_goal_that_leaves_all_tools_open_is_told(level, told):
     data["hands"] = {"may": ["grab"]}
     level.write_text(json.dumps(data), encoding="utf-8")
     assert "whoever pauses" not in told("check", str(level))[1]
+
+
+def test_an_update_does_not_put_a_run_that_wins_no_more_in_the_place_of_a_solution(level, pytester):
+    solution = pytester.path / "answering.solution.replay.gz"
+    (pytester.path / "answering.json").write_bytes(level.read_bytes())
+    solution.write_bytes(solution_of(level).read_bytes())
+    before = solution.read_bytes()
+    pytester.makeini("[pytest]\nsandbox_levels = *.json\n")
+    harder(pytester.path / "answering.json")
+    plain = pytester.runpytest_inprocess(*LOADED, "--replay-output=out", solution.name)
+    assert "to accept" not in plain.stdout.str() and "record a run that wins in its place" in plain.stdout.str()
+    pytester.runpytest_inprocess(*LOADED, "--replay-update", solution.name).assert_outcomes(failed=1)
+    assert solution.read_bytes() == before
+    data = json.loads(level.read_text(encoding="utf-8"))
+    data["settings"] = {**data.get("settings", {}), "gravity": [0.0, -9.82]}
+    (pytester.path / "answering.json").write_text(json.dumps(data), encoding="utf-8")
+    pytester.runpytest_inprocess(*LOADED, "--replay-update", solution.name).assert_outcomes(passed=1)
+    assert solution.read_bytes() != before

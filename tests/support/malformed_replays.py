@@ -55,11 +55,9 @@ def _raw_cases(good: bytes) -> Iterator[tuple[str, bytes]]:
     yield "deep objects", b'{"a":' * 50_000 + b"1" + b"}" * 50_000 + b"\n"
     yield "a level", b'{"format": "spring-sandbox/level", "version": 3, "name": "x"}\n'
     yield "utf-16", good.decode().encode("utf-16")
-    yield "byte order mark", b"\xef\xbb\xbf" + good
     yield "invalid utf-8", good[:50] + b"\xff\xfe" + good[50:]
     yield "nul bytes", b"\0" * 1000
     yield "a huge integer", b'{"format": "spring-sandbox/replay", "version": ' + b"9" * 10_000 + b"}\n"
-    yield "windows line ends", good.replace(b"\n", b"\r\n")
     yield "first line gone", b"".join(lines[1:])
     yield "second line gone", b"".join([lines[0], *lines[2:]])
     yield "last line gone", b"".join(lines[:-1])

@@ -124,7 +124,7 @@ def test_names_that_cannot_be_guessed_are_given(project):
     code, told = project("--replay-update")
     assert code == 1
     assert "its commands name rope, which swing.json lacks; new there: chain, twin\n" in told
-    assert "if that is called otherwise now: pytest --replay-update --replay-rename rope=NEW a.replay.gz\n" in told
+    assert "if rope is called otherwise now: pytest --replay-update --replay-rename rope=NEW a.replay.gz\n" in told
     assert project("--replay-update", "--replay-rename", "rope")[0] == 4
     code, told = project("--replay-update", "--replay-rename", "rope=chain")
     assert code == 0 and "swing.json: rope is called chain now\n" in told

@@ -42,7 +42,9 @@ def project(pytester):
 def test_a_recording_that_diverges_on_a_level_is_shrunk_where_that_is_asked_for(project):
     result = project.runpytest_inprocess(*OPTIONS, "--replay-against=levels", "--replay-shrink", "run.replay.gz")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["smallest: *run.smallest.replay.gz: 1 gesture, 1 command, *: diverged at tick *"])
+    result.stdout.fnmatch_lines(
+        ["smallest: *run.smallest.replay.gz: 1 gesture, 1 command, *: tick *: soft.1 is * m from where it is on *"]
+    )
     smallest = read_replay(project.path / "out" / "run.smallest.replay.gz")
     assert [line.record["type"] for line in smallest.script] == ["push"]
     plain = project.runpytest_inprocess(*OPTIONS, "--replay-against=levels", "run.replay.gz")

@@ -10,6 +10,8 @@ from sandbox.level.format.limits import CONTAINER_LIMIT, DEPTH_LIMIT
 
 # What Git LFS leaves in place of a file that was not fetched.
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+# How the lines begin that git puts into a text where two edits of it meet.
+CONFLICT = re.compile(rb"^(?:<{7}|>{7}) ", re.MULTILINE)
 # What the first line of a scene calls itself.
 SCENE_FORMAT = "spring-sandbox/scene"
 SCENE = "a scene, a run as it stood"

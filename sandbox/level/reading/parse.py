@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from sandbox.level.document.messages import place, worded
 from sandbox.level.document.model import LEVEL_KEYS, Level
 from sandbox.level.faults.validate import check_level
-from sandbox.level.format.foreign import foreign_bytes, foreign_fault, foreign_keys, scan
+from sandbox.level.format.foreign import CONFLICT, foreign_bytes, foreign_fault, foreign_keys, scan
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import (
     CHECK_LIMIT,
@@ -145,6 +145,9 @@ def _not_text(data: bytes) -> Fault | None:
         return "", foreign_fault(kind)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "line 1", "is UTF-16 text; save it as UTF-8"
+    if conflict := CONFLICT.search(data):
+        line = data.count(b"\n", 0, conflict.start()) + 1
+        return f"line {line}", "a merge conflict of git; keep one side of it, and take out its marks <<<, === and >>>"
     try:
         data.decode()
     except UnicodeDecodeError as error:

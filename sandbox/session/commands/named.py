@@ -49,8 +49,35 @@ class Named:
         return {**handler(core_schema), "names": self.kind, "noun": self.noun}
 
 
+class SlotAsSaid(int):
+    """A slot that was called by a second name, such as rope.end, which recordings keep: said."""
+
+    said: str
+
+    def __new__(cls, slot: int, said: str = "") -> "SlotAsSaid":
+        found = super().__new__(cls, slot)
+        found.said = said
+        return found
+
+
+def _as_said(names: Callable[[World], Sequence[str]], find: Callable[[World, str], int]) -> Callable[[World, str], int]:
+    def slot(world: World, name: str) -> int:
+        found = find(world, name)
+        return found if names(world)[found] == name else SlotAsSaid(found, name)
+
+    return slot
+
+
 def _listed(names: Callable[[World], Sequence[str]]) -> Callable[[World, str], int]:
     return lambda world, name: names(world).index(name)
+
+
+def _particles(world: World) -> Sequence[str]:
+    return world.particle_names
+
+
+def _springs(world: World) -> Sequence[str]:
+    return world.spring_names
 
 
 def _parts(world: World) -> Sequence[str]:
@@ -75,9 +102,9 @@ def _materials(world: World) -> Sequence[str]:
 
 _Slot = Annotated[int, Field(ge=0)]
 PARTICLES = Named(
-    "particle", lambda world: world.particle_names, World.particle_slot, "particle", active="particle_active"
+    "particle", _particles, _as_said(_particles, World.particle_slot), "particle", active="particle_active"
 )
-SPRINGS = Named("spring", lambda world: world.spring_names, World.spring_slot, "spring", active="spring_active")
+SPRINGS = Named("spring", _springs, _as_said(_springs, World.spring_slot), "spring", active="spring_active")
 if TYPE_CHECKING:
     # A slot, or until the command is carried out its name: no type says which of the two it is when.
     ParticleSlot: TypeAlias = Any

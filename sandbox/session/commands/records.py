@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -26,7 +26,8 @@ class ScriptLine:
 
 
 def to_record(command: Command, world: World) -> dict[str, Any]:
-    """A command as the JSON object of a file: slots become names, settings that it leaves alone are left out."""
+    """A command as the JSON object of a file: slots become names, those that were said where
+    a thing has two; settings that it leaves alone are left out."""
     record: dict[str, Any] = {"type": command.type}
     named = namespaces(type(command))
     for field, value in asdict(command).items():  # type: ignore[call-overload]
@@ -34,7 +35,10 @@ def to_record(command: Command, world: World) -> dict[str, Any]:
             continue
         if field in named:
             names = named[field].names(world)
-            record[field] = [names[slot] for slot in value] if isinstance(value, tuple) else names[value]
+            called = [
+                getattr(slot, "said", "") or names[slot] for slot in (value if isinstance(value, tuple) else [value])
+            ]
+            record[field] = called if isinstance(value, tuple) else called[0]
         else:
             record[field] = list(value) if isinstance(value, tuple) else value
     return record
@@ -49,17 +53,19 @@ def from_record(record: Any, world: World) -> Command:
     kind = COMMAND_TYPES.get(type_name)
     if kind is None:
         raise CommandError(UNKNOWN.format(shown(type_name), ", ".join(COMMAND_TYPES)))
+    slots: dict[str, Any] = {}
     for field, names in namespaces(kind).items():
         if isinstance(values.get(field), list):
-            values[field] = [names.slot(world, name) for name in values[field]]
+            slots[field] = tuple(names.slot(world, name) for name in values[field])
         elif values.get(field) is not None:
-            values[field] = names.slot(world, values[field])
+            slots[field] = names.slot(world, values[field])
     try:
         # JSON mode: lists stand for tuples and whole numbers for floats, and nothing else is converted.
-        return adapter(kind).validate_json(json.dumps(values, default=_plain), strict=True)
+        command = adapter(kind).validate_json(json.dumps(values | slots, default=_plain), strict=True)
     except (ValidationError, ValueError) as error:
         text = plain_fault(error, namespaces(kind)) if isinstance(error, ValidationError) else str(error)
         raise CommandError(f"{type_name}: {text}") from None
+    return replace(command, **slots) if slots else command
 
 
 def _plain(value: Any) -> Any:

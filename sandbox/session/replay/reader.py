@@ -1,9 +1,11 @@
 """Reading replay files: every line checked before it is believed, faults as one line each."""
 
+import codecs
 import io
 import json
 import os
 import re
+import shlex
 import zlib
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +15,7 @@ from typing import Annotated, Any, BinaryIO, ClassVar, TypeVar, cast
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from sandbox.level.document.model import Level, Settings
-from sandbox.level.format.foreign import LFS_POINTER, scan
+from sandbox.level.format.foreign import CONFLICT, LFS_POINTER, scan
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.plan.plan import Plan, kept_plan
@@ -412,7 +414,19 @@ def _lines(source: str, path: Path) -> Iterator[tuple[int, bytes]]:
             if number > LINE_LIMIT:
                 raise ReplayError(f"{source}: more than {LINE_LIMIT:,} lines")
             if line.strip():
-                yield number, line
+                yield number, _as_written(path, number, line)
+
+
+def _as_written(path: Path, number: int, line: bytes) -> bytes:
+    """A line without what editors and git add on Windows. Raises ReplayError at a merge conflict."""
+    if CONFLICT.match(line):
+        raise ReplayError(
+            f"{path}: line {number}: a merge conflict of git; take one side whole: git checkout --ours "
+            f"{shlex.quote(str(path))}; if a recording then differs from its level, record it again"
+        )
+    if number == 1:
+        line = line.removeprefix(codecs.BOM_UTF8)
+    return line[:-2] + b"\n" if line.endswith(b"\r\n") else line
 
 
 class ReplayLines:
@@ -457,7 +471,7 @@ class ReplayLines:
                 line += file.readline(limit + 1 - len(line))
             if len(line) > limit:
                 raise ReplayError(f"{self.path}: line {number}: longer than {limit} bytes")
-            yield line
+            yield _as_written(self.path, number, line)
             number += 1
 
     def _limit(self, beginning: bytes) -> int:

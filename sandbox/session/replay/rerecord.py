@@ -113,14 +113,14 @@ def carried_over(replay: Replay, renames: Renames) -> Replay:
     """A recording as it is with other names in its level and its commands."""
     if not renames:
         return replay
-    script = tuple(replace(line, record=_renamed_record(line.record, renames)) for line in replay.script)
+    script = tuple(replace(line, record=renamed_record(line.record, renames)) for line in replay.script)
     return replace(replay, level=_renamed_level(replay.level, renames), script=script)
 
 
 def missing_names(replay: Replay, level: Level) -> list[str]:
     """Bodies and loose particles of the recorded level that its commands name and another level does not have."""
     gone = _kinds(replay.level).keys() - _kinds(level).keys()
-    named = {_owner(text) for line in replay.script for text in _names_in(line)}
+    named = {owner_of(text) for line in replay.script for text in _names_in(line)}
     return [name for name in _kinds(replay.level) if name in gone & named]
 
 
@@ -134,11 +134,11 @@ def renamed_name(name: str, renames: Renames) -> str:
     """A name of a body, or of a particle or spring of it, as it is after bodies were called otherwise."""
     if name in renames:
         return renames[name]
-    owner = _owner(name)
+    owner = owner_of(name)
     return f"{renames[owner]}{name[len(owner) :]}" if owner in renames else name
 
 
-def _owner(name: str) -> str:
+def owner_of(name: str) -> str:
     """The body that a particle, a spring or a part is of, by its name."""
     return max((name.rpartition(sign)[0] for sign in ".:"), key=len) or name
 
@@ -168,7 +168,8 @@ def _named_fields(record: Mapping[str, Any]) -> list[str]:
     return [field for field in {*named, "body"} if isinstance(record.get(field), str | list)]
 
 
-def _renamed_record(record: dict[str, Any], renames: Renames) -> dict[str, Any]:
+def renamed_record(record: dict[str, Any], renames: Renames) -> dict[str, Any]:
+    """A command's record as it is after bodies were called otherwise."""
     return record | {field: _renamed_value(record[field], renames) for field in _named_fields(record)}
 
 

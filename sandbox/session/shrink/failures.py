@@ -9,6 +9,7 @@ import numpy as np
 
 from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level
+from sandbox.level.rules.player_limits import thing_of
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot, hash_by_array
@@ -141,12 +142,17 @@ class Crashes(Failure):
 
 @dataclass(frozen=True)
 class Freezes(Failure):
-    """Particles get values that no physics can give, and are frozen where they were; array: in which, "": in any."""
+    """Particles get values that no physics can give, and are frozen where they were.
+
+    array: in which; thing: the body or loose particle; "": any.
+    """
 
     array: str = ""
+    thing: str = ""
 
     def __str__(self) -> str:
-        return f"particles freeze, by their {self.array}" if self.array else "particles freeze"
+        of = f" of {self.thing}" if self.thing else ""
+        return f"particles{of} freeze, by their {self.array}" if self.array else f"particles{of} freeze"
 
     def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         return _FrozenWatch(self, session)
@@ -158,19 +164,26 @@ class _FrozenWatch(FailureWatch):
 
     def after(self) -> FailureSeen | None:
         for hit in self._session.world.contained:
-            if hit.frozen and self._failure.array in ("", hit.array):
-                return FailureSeen(Freezes(hit.array), str(hit))
+            thing = thing_of(hit.name)
+            if hit.frozen and self._failure.array in ("", hit.array) and self._failure.thing in ("", thing):
+                return FailureSeen(Freezes(hit.array, thing), str(hit))
         return None
 
 
 @dataclass(frozen=True)
 class Leaves(Failure):
-    """A particle is outside a box [m]: left, bottom, right, top; None: outside the level's view."""
+    """A particle is outside a box [m]: left, bottom, right, top; None: outside the level's view.
+
+    thing: the body or loose particle that leaves it; side: by which it does, as left; "": any.
+    """
 
     box: Box | None = None
+    thing: str = ""
+    side: str = ""
 
     def __str__(self) -> str:
-        return "something leaves " + ("the level's view" if self.box is None else f"the box {list(self.box)}")
+        box = "the level's view" if self.box is None else f"the box {list(self.box)}"
+        return f"{self.thing or 'something'} leaves {box}{f' on the {self.side}' if self.side else ''}"
 
     def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         box = session.level.view if self.box is None else self.box
@@ -187,19 +200,27 @@ class _BoxWatch(FailureWatch):
         world, (left, bottom, right, top) = self._world, self._box
         inside = np.all((world.position >= (left, bottom)) & (world.position <= (right, top)), axis=1)
         outside = np.flatnonzero(~inside & shown_particles(world))
-        if not len(outside):
-            return None
-        slot = int(outside[0])
-        x, y = world.position[slot].tolist()
-        return FailureSeen(self._failure, f"{world.particle_names[slot]} is at ({x:.2f}, {y:.2f}) m")
+        failure = self._failure
+        for slot in outside.tolist():
+            x, y = world.position[slot].tolist()
+            sides = {"left": x < left, "right": x > right, "bottom": y < bottom, "top": y > top}
+            # What is nowhere is beyond no side.
+            side = next((name for name, beyond in sides.items() if beyond), "")
+            name = world.particle_names[slot]
+            if failure.thing in ("", thing_of(name)) and failure.side in ("", side):
+                found = Leaves(failure.box, thing_of(name), side)
+                return FailureSeen(found, f"tick {world.tick}: {name} is at ({x:.2f}, {y:.2f}) m")
+        return None
 
 
 @dataclass(frozen=True)
 class IsLost(Failure):
-    """The goal of the level is lost."""
+    """The goal of the level is lost; rule: by which one, its id, "": any."""
+
+    rule: str = ""
 
     def __str__(self) -> str:
-        return "the goal is lost"
+        return f'the goal is lost by rule "{self.rule}"' if self.rule else "the goal is lost"
 
     def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         if not any(action.fail is not None for rule in session.level.rules for action in rule.then):
@@ -216,8 +237,11 @@ class _GoalWatch(FailureWatch):
         if found is None:
             return None
         self.is_over = True
-        rate = self._session.level.settings.tick_rate
-        return None if found.is_won else FailureSeen(self._failure, f"{outcome_text(found, rate)}: {found.text}")
+        level = self._session.level
+        rule, rate = level.rules[found.rule].id, level.settings.tick_rate
+        if found.is_won or self._failure.rule not in ("", rule):
+            return None
+        return FailureSeen(IsLost(rule), f"{outcome_text(found, rate)}: {found.text}")
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,10 @@ import numpy as np
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands.records import ScriptLine
+from sandbox.session.compare.distance import VISIBLE
 from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Session
-from sandbox.session.shrink.failures import Failure, FailureError, FailureSeen, FailureWatch
+from sandbox.session.shrink.failures import Diverges, Failure, FailureError, FailureSeen, FailureWatch
 from sandbox.session.shrink.passes import ROUNDER, SHORTER, Answer, Pass, Play, short_json
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
@@ -118,7 +119,8 @@ class Trials:
 
 
 class Shrinker:
-    """Makes a play that fails smaller. smallest: until now; seen: what it does; tries: how many plays were run.
+    """Makes a play that fails smaller. smallest: until now; seen: what it does; tries: how many plays were run; found:
+    what the whole play did.
 
     What it finds is the same for any number of processes: of the candidates of a pass the first counts that fails.
     """
@@ -128,7 +130,7 @@ class Shrinker:
         self.level, self.original = level, play
         self._trials = Trials(level, failure)
         first = self._trials.run(replace(play, ticks=play.ticks + failure.beyond))
-        self.seen: FailureSeen | None = first.seen
+        self.found = self.seen = first.seen
         self.smallest = first.play
         self.tries = 1
         self._known: set[str] = set()
@@ -226,6 +228,12 @@ def shrinker_of(replay: Replay, failure: Failure, level: Level | None = None) ->
     return Shrinker(level or replay.level, Play(replay.script, replay.ticks), failure)
 
 
+def shrinker_against(replay: Replay, level: Level) -> Shrinker:
+    """A shrinker of how a recording comes apart from itself on another level: as people see it, or else in a bit."""
+    visible = shrinker_of(replay, Diverges(level, apart=VISIBLE))
+    return visible if visible.seen is not None else shrinker_of(replay, Diverges(level))
+
+
 # In a process that tries plays: what it was given last, and its trials.
 _work: list[tuple[bytes, Trials]] = []
 
@@ -296,12 +304,12 @@ def test_text(play: Play, failure: Failure, source: str, recording: Path, levels
 def code_of(failure: Failure, other: str | None) -> str:
     """A failure as Python makes it; other: where its other level is."""
     arguments = []
-    for each in fields(failure):  # type: ignore[arg-type]
+    for place, each in enumerate(fields(failure)):  # type: ignore[arg-type]
         value = getattr(failure, each.name)
         if isinstance(value, Level):
             arguments.append(_loaded(str(other)))
         elif value != each.default:
-            arguments.append(f"{each.name}={_quoted(value)}" if arguments else _quoted(value))
+            arguments.append(f"{each.name}={_quoted(value)}" if place else _quoted(value))
     return f"{type(failure).__name__}({', '.join(arguments)})"
 
 
