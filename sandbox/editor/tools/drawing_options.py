@@ -80,7 +80,7 @@ class BodyOptions(Options):
 
     # That of a particle, where the mass of the whole is not set.
     particle_mass: float
-    mass: float | None
+    mass: float | None = None
     material: str
     # Of those that have a firmness, in per cent.
     sag: float | None = None
