@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.level.format.look import PALETTE
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.physics.softness.firmness import firm_bodies
@@ -66,6 +67,7 @@ class Player:
             (0.06, self._push), (0.03, self._shake), (0.03, self._move), (0.02, self._remove), (0.02, self._free),
             (0.03, self._add_particle), (0.03, self._add_spring), (0.03, self._add_body), (0.03, self._weather),
             (0.04, self._solver), (0.05, self._undo), (0.08, self._key), (0.02, self._weigh),
+            (0.05, self._paint),
         )  # fmt: skip
         for share, act in acts:
             if self.chance.random() < share:
@@ -139,6 +141,11 @@ class Player:
 
     def _weigh(self) -> None:
         self._do({"type": "scale_mass", "particle": self._particle(), "factor": number(self.chance, 0.5, 2.0)})
+
+    def _paint(self) -> None:
+        joined = {body for each in self.session.world.joined if "kit" not in each.definition for body in each.names}
+        names = [name for name in self.session.world.particle_names if name.partition(".")[0] in joined]
+        self._do({"type": "set_colour", "particle": self._chosen(names), "colour": self._chosen(PALETTE)})
 
     def _inflation(self) -> None:
         name = self._chosen(self.session.world.area_names)
