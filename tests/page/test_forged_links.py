@@ -88,7 +88,7 @@ def test_a_link_that_says_what_came_out_or_of_before_is_refused_in_a_line(tmp_pa
 
 
 def test_a_run_whose_end_is_another_is_not_verified(tmp_path):
-    level = load_level("chain_of_events")
+    level = load_level("rope")
     ((said, _),) = in_node(tmp_path, level, [link(level, BALL)])
     assert said == "not verified: other bits"
 

@@ -9,7 +9,7 @@ import pytest
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import FRAMES, TICKED, opened
-from tests.page.pointing import click, middle, tap
+from tests.page.pointing import click, middle, place, tap
 from tests.support.wholes import some_and_whole
 
 LEVELS = ("truck_course", "ferry", "egg_drop", "bridge_budget", "chain_of_events", "crane")
@@ -67,7 +67,7 @@ def test_bars_words_and_keys_leave_the_level_free(
 def test_the_open_panel_covers_neither_the_level_nor_a_key(
     browser: Browser, tmp_path: Path, size: tuple[int, int]
 ) -> None:
-    tab = page(browser, tmp_path, "low_door", size)
+    tab = page(browser, tmp_path, "suspension_car", size)
     click(tab, "#tune")
     assert covering(tab) == []
     tab.evaluate("document.querySelector('.fields').scrollIntoView()")
@@ -81,7 +81,7 @@ def test_the_open_panel_covers_neither_the_level_nor_a_key(
 
 
 def test_a_small_page_folds_its_tools_and_unfolds_them_by_a_button(browser: Browser, tmp_path: Path) -> None:
-    tab = page(browser, tmp_path, "truck_course", (300, 200))
+    tab = page(browser, tmp_path, "suspension_car", (300, 200))
     shown = "[...document.querySelectorAll('#tools button')].filter((each) => each.offsetParent).map((each) => each.id)"
     assert tab.evaluate(shown) == ["again", "more"]
     click(tab, "#more")
@@ -98,7 +98,7 @@ def test_words_that_go_once_somebody_has_played_leave_more_room_and_never_move_w
     tab = page(browser, tmp_path, "chain_of_events", TURNED)
     tab.evaluate(f"{TICKED}; {GLIDDEN}")
     zoom = tab.evaluate("page.toy.camera.zoom")
-    x, y = tab.evaluate("[0, 1].map((k) => page.toy.picture.at[k])")
+    x, y = place(tab, "marble")
     tab.touch("touchStart", (x, y))
     tab.touch("touchMove", (x + 30, y - 30))
     tab.evaluate(GLIDDEN)

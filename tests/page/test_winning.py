@@ -19,7 +19,7 @@ from tests.support.wholes import some_and_whole
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 # The words of the menu for what a solution gives in hertz, in order.
-WORDS = {"squeeze": ["jelly", "firm"], "egg_drop": ["jelly"]}
+WORDS = {"squeeze": ["jelly", "firm"], "egg_drop": ["soft"]}
 # How long a level goes on after the last deed at most [s].
 AFTER = 60.0
 
