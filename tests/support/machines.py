@@ -31,6 +31,7 @@ def build_walker(driver):
     draw_ground(driver, (-7, -3.5), (7, -3.5), (7, -2), (-7, -2))
     driver.key(pygame.K_j)
     driver.fill(driver.editor.options.fields["cells"][0], "2")
+    driver.fill(driver.editor.options.fields["sag"][0], "0.03")
     driver.drag((-5.5, -1), (-4, -0.8), (-2.5, -0.5))
     driver.key(pygame.K_s)
     for foot in (-5.0, -4.0, -3.0):
