@@ -28,7 +28,7 @@ FIRST_LOOKS, LATER = 10, 16
 # Where a world keeps how often it was looked at, and the version, arrays and tick that it was last seen with.
 SEEN = "_seen_by_tests"
 # Of a process that runs tests [bytes].
-MOST_MEMORY = 1.0e9
+MOST_MEMORY = 1.3e9
 # So much more memory [bytes] than after the last search for garbage is worth another.
 WORTH_A_SEARCH = 100e6
 # After how many objects more, and how many such searches, the next generation of them is searched for garbage: the

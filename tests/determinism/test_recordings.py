@@ -10,7 +10,6 @@ import sys
 
 import pytest
 
-from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO
@@ -18,7 +17,7 @@ from sandbox.session.compare.comparison import verify
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.session import Session
-from tests.support.play import play
+from tests.support.play import play, without_limits
 
 # The person does everything there is to do in two seconds, and begins again.
 CYCLE = 120  # [ticks]
@@ -64,7 +63,7 @@ def test_played_levels_verify_in_every_way(paths, is_whole, tmp_path):
     recordings, short_ones = [], []
     for path in paths:
         # Whatever hands may do.
-        level = replaced(read_level(path), hands=None)
+        level = without_limits(read_level(path))
         many, few = _lengths(level, is_whole)
         ticks = many if COMPILED else few
         long, short = tmp_path / f"{path.stem}.replay.gz", tmp_path / f"{path.stem}.short.replay.gz"

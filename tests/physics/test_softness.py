@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from sandbox.level.assembly.build_world import build_world
-from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.breaking import unlimited
@@ -21,6 +20,7 @@ from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.session.commands import SetCoefficients, SetFirmness
 from sandbox.session.session import Session
+from tests.support.play import without_limits
 from tests.support.wobbles import measured_wobble
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
@@ -286,7 +286,7 @@ def seen(session, subject, supported):
 @pytest.mark.parametrize("name", [path.stem for path in shipped_levels()])
 def test_a_body_sags_in_its_level_by_what_was_set(name):
     # Whatever hands may do.
-    level = replaced(load_level(name), hands=None)
+    level = without_limits(load_level(name))
     for number in range(len(kinds(Session(level)))):
         session = Session(level)
         subject, meter = kinds(session)[number]

@@ -7,14 +7,13 @@ import pytest
 
 import sandbox.session.session as session_module
 from sandbox.cli import main
-from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.step import step
 from sandbox.session.commands import Grab, Push
 from sandbox.session.compare.rollback import roll_back, roll_back_level
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
-from tests.support.play import play
+from tests.support.play import play, without_limits
 from tests.support.rope_level import rope_level
 from tests.support.wholes import some_and_whole
 
@@ -48,7 +47,7 @@ def recorded(tmp_path):
 @pytest.mark.parametrize("name", LEVELS)
 def test_a_shipped_level_comes_to_the_same_bits_from_eight_ticks_before_each(name):
     # Whatever hands may do.
-    result = roll_back_level(replaced(load_level(name), hands=None), 8)
+    result = roll_back_level(without_limits(load_level(name)), 8)
     assert result.found is None and result.ticks >= 300 and result.commands > 20
 
 

@@ -4,6 +4,9 @@ import math
 
 import numpy as np
 
+from sandbox.level.document.model import Level
+from sandbox.level.format.quantities import replaced
+from sandbox.level.rules.player_limits import BudgetDef, PlayerLimits
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.session.commands import (
@@ -18,6 +21,14 @@ from sandbox.session.commands import (
     Unpin,
 )
 from sandbox.session.session import Session
+
+
+def without_limits(level: Level) -> Level:
+    """A level in which hands may do everything, as often as they like; what rules ask of budgets stays."""
+    if level.hands is None:
+        return level
+    budgets = BudgetDef(**{deed: 1_000 for deed, most in level.hands.at_most if most is not None})
+    return replaced(level, hands=PlayerLimits(at_most=budgets))
 
 
 def play(session: Session, ticks: int) -> None:
