@@ -451,7 +451,7 @@ export class Hands {
     this.#pointers.delete(event.pointerId);
     if (!pointer) return;
     clearTimeout(pointer.timer);
-    if (event.type === 'pointerup' && pointer.kind === 'make' && this.maker.isAtWork) this.#make(pointer);
+    if (event.type === 'pointerup' && pointer.kind === 'make' && this.maker.isAtWork) this.#make(event, pointer.within);
     if (event.type === 'pointerup' && pointer.asks !== null) {
       this.menu({ particle: pointer.asks, x: pointer.x, y: pointer.y });
     }
@@ -465,10 +465,10 @@ export class Hands {
     else if (pointer.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
   }
 
-  /** Make what was drawn, up to where the pointer is.
-   * @type {(pointer: Pointer) => void} */
-  #make({ x, y, within }) {
-    const near = new Near(this.run.world), point = this.camera.toWorld(x, y);
+  /** Make what was drawn, up to where the pointer is lifted: the view may have moved since the pointer did.
+   * @type {(at: Pressed, within: number) => void} */
+  #make({ offsetX, offsetY }, within) {
+    const near = new Near(this.run.world), point = this.camera.toWorld(offsetX, offsetY);
     const isMade = this.maker.end(this.tool, point, near.particle(point, within) ?? near.free(point, within), within);
     if (isMade) this.speak(`A new ${this.maker.part(this.tool)?.name ?? this.tool} is there.`);
   }
