@@ -108,7 +108,6 @@ SOLUTIONS: dict[str, list[Gesture]] = {
         drag("boat.21", (13.0, -2.7, 0.5), (21.0, 2.6, 0.5), (21.5, 2.6, 0.5)),
         lift("crate 1.4", 22.0, 3.4, 9.2), lift("crate 2.4", 26.0, 2.3, 7.9), lift("crate 3.4", 30.0, 1.2, 6.5),
     ],
-    # The word is jelly; soft holds it as well, and firm breaks it.
     "egg_drop": [firmness(1.0, "cushion", 1.279), press("d", 3.5, 3.7)],
     "low_door": [material(1.0, "deck", stiffness=0.25), *ahead((3.0, 11.0))],
     "catapult_practice": [material(1.0, "thread", stiffness=0.16), drive(":0", 1.0, 3.0, 5.0)],
