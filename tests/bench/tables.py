@@ -21,7 +21,6 @@ PROGRAMS = {
     "Joint grid": ["tests.bench.joint_grid"],
     "The same rope after a second": ["tests.bench.strip", "docs/readme/engines.png"],
     "Large lattices": ["tests.bench.large", "32,64,100,128"],
-    "Heaps and stacks": ["tests.bench.contacts"],
 }
 RUN = re.compile(r"^One run of .*?:$", re.MULTILINE | re.DOTALL)
 
