@@ -50,6 +50,7 @@ from sandbox.level.kinds.jelly import CircleShape, JellyDef
 from sandbox.level.kinds.mesh import MeshDef
 from sandbox.level.kinds.wheel import WheelDef
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME
+from sandbox.physics.geometry.segment import doubled_areas
 
 RIGID = FirmnessDef(sag=0.0)
 MOVING_LIMIT = 300
@@ -99,7 +100,7 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
         raise Unreadable(f"has places beyond {LARGEST:,.0f} m; give it a smaller width")
     # Lines alone have no mass, so that nothing moves them.
     moving = [kind == JELLY or (kind is None and body.kind == DYNAMIC and bool(body.solid)) for body in bodies]
-    areas = [sum(shape.polygon.area for shape in body.shapes()) or 1e-6 for k, body in enumerate(bodies) if moving[k]]
+    areas = [sum(shape.polygon.area for shape in body.shapes) or 1e-6 for k, body in enumerate(bodies) if moving[k]]
     spacing = common_spacing(areas, STIFF_PARTICLES)
     joints = scene_joints(scene, bodies, scale, left_out)
     brackets = _brackets(joints, bodies, moving, BRACKET * max(areas, default=0.0)) if kind is None else set()
@@ -145,7 +146,7 @@ def _ground(body: SceneBody, base: str, taken: set[str], left_out: LeftOut) -> l
     for touch in dict.fromkeys((each.friction, each.restitution) for each in body.fixtures):
         alike = tuple(each for each in body.fixtures if (each.friction, each.restitution) == touch)
         part = replace(body, fixtures=alike)
-        for piece in ground_of(part.shapes(), part.lines, base, left_out):
+        for piece in ground_of(part.shapes, part.lines, base, left_out):
             own = free_name(body.name or base, base, taken)
             made.append(replaced(piece, id=own, friction=touch[0], restitution=touch[1]))
     return made
@@ -160,7 +161,7 @@ def _bodies(
     for key in ("friction", "restitution", "filter"):
         if len({getattr(each, key) for each in body.solid}) > 1:
             left_out.add(f"{key} of a fixture (a body has one)")
-    shapes = body.shapes()
+    shapes = body.shapes
     if len(shapes) > 1:
         left_out.add("part of a body that is apart from the rest (it came in as one of its own)", len(shapes) - 1)
     made: list[BodyDef] = []
@@ -188,7 +189,8 @@ def _weighed(found: JellyDef, shape: Region, fixtures: Sequence[Fixture]) -> Bod
 
     parts = [shapely.Polygon(each.ring).buffer(0.0) for each in fixtures]
     own = [k for k, part in enumerate(parts) if part.intersection(shape.polygon).area > 0.5 * part.area]
-    dense = [fixtures[k].density if any(fixtures[k].density for k in own) else DENSITY for k in own]
+    dense = [fixtures[k].density for k in own]
+    dense = dense if any(dense) else [DENSITY] * len(own)
     radius = found.shape.circle if isinstance(found.shape, CircleShape) else None
     areas = [math.pi * radius**2 if radius else parts[k].area for k in own]
     total = sum(area * density for area, density in zip(areas, dense, strict=True))
@@ -201,9 +203,7 @@ def _weighed(found: JellyDef, shape: Region, fixtures: Sequence[Fixture]) -> Bod
     density = np.sum(
         [value * shapely.intersects(parts[k], middles) for k, value in zip(own, dense, strict=True)], axis=0
     )
-    ax, ay = (places[triangles[:, 1]] - places[triangles[:, 0]]).T
-    bx, by = (places[triangles[:, 2]] - places[triangles[:, 0]]).T
-    third = np.abs(ax * by - ay * bx) * np.maximum(density, 1e-3 * np.max(density))
+    third = np.abs(doubled_areas(*places[triangles.T])) * np.maximum(density, 1e-3 * np.max(density))
     mass = np.bincount(triangles.reshape(-1), np.repeat(third, 3), minlength=len(places))
     mass = np.clip(mass * (total / float(mass.sum())), 1e-9, 1e9)
     return MeshDef(
@@ -236,9 +236,9 @@ def _brackets(joints: Sequence[Joint], bodies: Sequence[SceneBody], moving: Sequ
         for index, other in (joint.bodies, joint.bodies[::-1]):
             if joint.collides or moving[index] or not moving[other] or bodies[index].lines:
                 continue
-            shapes = bodies[index].shapes()
+            shapes = bodies[index].shapes
             fits = len(shapes) == 1 and shapes[0].polygon.area <= most
-            if fits and any(shapes[0].polygon.intersects(each.polygon) for each in bodies[other].shapes()):
+            if fits and any(shapes[0].polygon.intersects(each.polygon) for each in bodies[other].shapes):
                 found.add(index)
     return found
 

@@ -4,6 +4,7 @@ import math
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -97,6 +98,7 @@ class SceneBody:
         """The radius [m] of what is one disc."""
         return self.fixtures[0].radius if len(self.fixtures) == 1 else None
 
+    @cached_property
     def shapes(self) -> list[Region]:
         """The connected regions that it fills, the largest first."""
         drawing = Sketch("jelly", [FilledShape((each.ring,), "nonzero", None, self.name) for each in self.solid])
