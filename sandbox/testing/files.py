@@ -8,14 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.session.replay import RECORDINGS, is_recording
+from sandbox.session.replay import FORMAT, RECORDINGS, is_recording
 
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
 GOLDEN = ".golden.json"
 USUAL_LEVELS = ["levels/*.json"]
 LEVEL_FORMAT = "spring-sandbox/level"
-REPLAY_FORMAT = "spring-sandbox/replay"
 # What is read of a file to see whether it is a recording [bytes].
 HEAD = 4096
 # Where levels lie unless the setting says otherwise: in folders of this name.
@@ -110,7 +109,7 @@ def _holds_recording(path: Path) -> bool:
             head = zlib.decompressobj(31).decompress(head, HEAD)
     except (OSError, zlib.error):
         return False
-    return REPLAY_FORMAT.encode() in head
+    return FORMAT.encode() in head
 
 
 def asked_renames(config: pytest.Config) -> dict[str, str]:

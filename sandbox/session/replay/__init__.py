@@ -1,5 +1,6 @@
 from pathlib import Path
 
+FORMAT = "spring-sandbox/replay"
 RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
 
 

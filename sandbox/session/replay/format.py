@@ -45,9 +45,9 @@ from sandbox.physics.state import ALWAYS_STORED, BY_STORED, COLUMNS, FAMILIES, O
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import World, WorldSettings, grow
+from sandbox.session.replay import FORMAT
 from sandbox.version import __version__
 
-FORMAT = "spring-sandbox/replay"
 VERSION = 2
 # Hexadecimal digits of a line's chain, by version; of hashes a reader compares as many as there are. That anything
 # differs is said by the hash of the whole state, those of arrays only say which.

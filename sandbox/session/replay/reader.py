@@ -25,7 +25,8 @@ from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.faults import plain_fault
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.format import CHAIN_DIGITS, FORMAT, TICK_DIGITS, VERSION, level_digest, unseal
+from sandbox.session.replay import FORMAT
+from sandbox.session.replay.format import CHAIN_DIGITS, TICK_DIGITS, VERSION, level_digest, unseal
 from sandbox.session.replay.recording import ByHand, OtherPhysicsError, Replay, ReplayError, StoredState, TickHashes
 
 # What a stored state may hold [bytes]: so much, and so much for each particle and spring. Shipped levels have up to 224
