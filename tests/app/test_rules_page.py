@@ -117,7 +117,7 @@ def test_every_metric_that_rules_ask_for_can_be_chosen(page):
         assert rules.form.pickers["metric"].shown.text == label, driver.notices
 
 
-def test_a_rule_with_several_questions_is_shown_as_text_and_kept(page):
+def test_a_rule_with_several_questions_is_kept_as_another_field_of_it_changes(page):
     several = {"all": [{"touches": ["ball", "floor"]}, {"none": [{"key": "g"}]}]}
     driver, rules = page(rules=[{**GOAL, "when": several}])
     before = driver.editor.document.level.rules[0].when

@@ -22,6 +22,10 @@ FIRST_KEY = "g"
 STAY = 0.5
 
 
+# A rule, or a part of one, as plain values.
+RuleData = dict[str, Any]
+
+
 class Template(NamedTuple):
     """A rule to begin with: a sentence with what the level has in it, and the edit; None: why it cannot be had."""
 
@@ -51,6 +55,17 @@ def add_rule(document: Document, data: Mapping[str, Any]) -> Document:
     """Add a rule of plain values, by a free name. Raises EditError."""
     (name,) = free_ids({rule.id for rule in document.level.rules}, [str(data["id"])])
     return set_rules(document, [*document.level.rules, read_rule({**data, "id": name})])
+
+
+def change_rule(document: Document, index: int, change: Callable[[Level, RuleData], RuleData]) -> Document:
+    """The document with a rule that is what `change` makes of its plain values. Raises EditError."""
+    rules = list(document.level.rules)
+    data = change(document.level, plain(rules[index]))
+    others = [rule.id for k, rule in enumerate(rules) if k != index]
+    if data["id"] in others:
+        raise EditError(f'there is a rule "{data["id"]}" already')
+    rules[index] = read_rule(data)
+    return set_rules(document, rules)
 
 
 def delete_rule(document: Document, index: int) -> Document:

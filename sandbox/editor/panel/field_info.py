@@ -114,6 +114,11 @@ def fields_of(model: type[BaseModel]) -> dict[str, FieldInfo]:
     return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
 
 
+def choice_of(title: str, names: tuple[str, ...], tip: str, labels: tuple[str, ...] = ()) -> FieldInfo:
+    """A choice from a menu; labels: words for the names."""
+    return FieldInfo("choice", title, choices=names, labels=labels, tooltip=tip)
+
+
 def _part(annotation: Any) -> type[BaseModel] | None:
     """The model of a field that is one object or null."""
     kinds = [kind for kind in get_args(annotation) if kind is not type(None)]

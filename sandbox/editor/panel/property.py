@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
 from typing import Any, Final
@@ -130,6 +130,11 @@ class Section:
     title: str
     properties: tuple[Property, ...]
     is_rare: bool = False
+
+
+def named(properties: Iterable[Property], owner: str) -> tuple[Property, ...]:
+    """Properties whose changes the history calls by what they are of."""
+    return tuple(replace(each, label=f"{owner}: {each.step.lower()}") for each in properties)
 
 
 def found_sections(sections: Iterable[Section], query: str) -> tuple[Section, ...]:

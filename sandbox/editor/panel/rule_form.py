@@ -9,39 +9,32 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.edits.rule_edits import (
     FIRST_KEY,
-    LOST,
-    WON,
+    RuleData,
     add_counter,
     change_counter,
+    change_rule,
     delete_counter,
-    plain,
-    read_rule,
-    set_rules,
     subject_of,
 )
-from sandbox.editor.panel.field_info import FieldInfo, fields_of
-from sandbox.editor.panel.property import Property, Section, with_axes
-from sandbox.editor.rule_text import question_text, rule_text
+from sandbox.editor.panel.action_form import action_properties
+from sandbox.editor.panel.field_info import FieldInfo, choice_of, fields_of
+from sandbox.editor.panel.property import Property, Section, named
+from sandbox.editor.rule_text import rule_text
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level
-from sandbox.level.plan.actuators import actuators
-from sandbox.level.rules.rule import BELONGS, UNASKED, WALLS, ActionDef, CounterDef, QuestionDef, RuleDef
+from sandbox.level.rules.rule import GROUPS, UNASKED, WALLS, CounterDef, QuestionDef, RuleDef
 
 # What a question asks, in words.
 _ASKS = {
     "inside": "is inside", "crosses": "crosses", "touches": "touches", "breaks": "breaks", "counter": "counter is",
-    "key": "key is held", "time": "time is over", "metric": "measures",
-}  # fmt: skip
-# What an action does, in words.
-_DOES = {
-    "win": "win", "fail": "lose", "say": "say", "sound": "sound", "count": "count", "checkpoint": "checkpoint",
-    "cut": "cut", "pin": "pin", "unpin": "unpin", "drive": "drive", "sag": "make soft", "gravity": "gravity",
-    "wind": "wind",
+    "key": "key is held", "time": "time is over", "metric": "measures", "all": "all of these hold",
+    "any": "one of these holds", "none": "none of these holds",
 }  # fmt: skip
 ANYTHING = "anything"
-# How soft a body becomes at first: the part of its height by which it sags.
-SOFT = 0.2
-_Data = dict[str, Any]
+# After how long [s] a question asks at first.
+FIRST_TIME = 10.0
+# A question of the level: the index of its rule, and the way to it through questions that ask others.
+_At = tuple[int, ...]
 
 
 def rule_properties(document: Document, index: int) -> tuple[Section, ...]:
@@ -50,8 +43,9 @@ def rule_properties(document: Document, index: int) -> tuple[Section, ...]:
     sections = []
     if 0 <= index < len(level.rules):
         rule = level.rules[index]
-        when, then = _question_properties(level, rule, index), _action_properties(level, rule, index)
-        sections = [Section(rule_text(rule), when), Section("Then", then), Section("This rule", _own(rule, index))]
+        when, then = _question_properties(level, rule, index), action_properties(level, rule, index)
+        parts = {rule_text(rule): when, "Then": then, "This rule": _own(rule, index)}
+        sections = [Section(title, named(part, f"Rule {rule.id}")) for title, part in parts.items()]
     about = replace(fields_of(Level)["goal"], title="Goal line")
     goal = Property("goal", about, level.goal, lambda document, value: set_level_field(document, "goal", value))
     return (*sections, Section("Counters", tuple(_counter_properties(level))), Section("For players", (goal,)))
@@ -65,16 +59,14 @@ def _asked(question: QuestionDef) -> str:
 
 
 def _question_properties(level: Level, rule: RuleDef, index: int) -> tuple[Property, ...]:
-    question = rule.when
-    made: list[Property] = []
-    if question.members:
-        about = FieldInfo("text", "When", tooltip="It asks several questions. They are changed in the file.")
-        made.append(Property("when", about, question_text(question)))
-    else:
-        made += _sentence(level, question, index)
-    about = fields_of(RuleDef)["for_seconds"]
-    made.append(_of_rule(index, "for_seconds", replace(about, title="For"), rule.for_seconds))
-    return tuple(made)
+    made = _sentence(level, rule.when, (index,))
+    about = FieldInfo("part", "Ask more", tooltip="Another question beside what the rule asks.")
+    for_seconds = replace(fields_of(RuleDef)["for_seconds"], title="For")
+    return (
+        *made,
+        Property("ask", about, False, lambda document, _: _ask_more(index, document)),
+        _of_rule(index, "for_seconds", for_seconds, rule.for_seconds),
+    )
 
 
 def _own(rule: RuleDef, index: int) -> tuple[Property, ...]:
@@ -83,11 +75,12 @@ def _own(rule: RuleDef, index: int) -> tuple[Property, ...]:
     return once, _of_rule(index, "id", about["id"], rule.id)
 
 
-def _sentence(level: Level, question: QuestionDef, index: int) -> list[Property]:
-    """Subject, verb and object, in the order of the sentence."""
-    asks = _asked(question)
-    asked = Property("asks", _choice("What", tuple(_ASKS), "What the rule asks.", tuple(_ASKS.values())), asks,
-                     partial(_set_asked, index))  # fmt: skip
+def _sentence(level: Level, question: QuestionDef, at: _At) -> list[Property]:
+    """Subject, verb and object, in the order of the sentence; of several questions, one after another."""
+    asks, into = _asked(question), "".join(f"{place}." for place in at[1:])
+    title = "When" if question.members else "What"
+    asked = Property(f"{into}asks", choice_of(title, tuple(_ASKS), "What the rule asks.", tuple(_ASKS.values())), asks,
+                     partial(_set_asked, at))  # fmt: skip
     things, zones = _things(level), tuple(zone.id for zone in level.zones)
     subject = question.particle or question.body
     made: list[Property] = []
@@ -95,36 +88,36 @@ def _sentence(level: Level, question: QuestionDef, index: int) -> list[Property]
     def word(
         field: str, about: FieldInfo, value: Any, write: Callable[[Document, Any], Document] | None = None
     ) -> None:
-        made.append(Property(field, about, value, write or partial(_set_word, index, field)))
+        made.append(Property(into + field, about, value, write or partial(_set_word, at, field)))
 
     def of_thing(title: str = "When", optional: bool = False) -> None:
         tip = "The body or loose particle that it asks for."
-        about = replace(_choice(title, things, tip), pick="mover", optional=optional, empty=ANYTHING)
-        word("subject", about, subject, partial(_set_subject, index))
+        about = replace(choice_of(title, things, tip), pick="mover", optional=optional, empty=ANYTHING)
+        word("subject", about, subject, partial(_set_subject, at))
 
     if asks in ("inside", "crosses"):
         of_thing()
         made.append(asked)
-        about = replace(_choice("Zone", zones, "The zone."), pick="zone")
+        about = replace(choice_of("Zone", zones, "The zone."), pick="zone")
         word("zone" if asks == "inside" else "crosses", about, question.zone or question.crosses)
     elif asks == "touches":
         pieces = (*things, *(piece.id for piece in level.terrain), *((WALLS,) if level.walls is not None else ()))
         first, second = (*(question.touches or ()), None)[:2]
-        about = replace(_choice("When", pieces, "What touches."), pick="thing")
-        word("touches.0", about, first, partial(_set_touching, index, 0))
+        about = replace(choice_of("When", pieces, "What touches."), pick="thing")
+        word("touches.0", about, first, partial(_set_touching, at, 0))
         made.append(asked)
         about = replace(
-            _choice("What it meets", pieces, "What is touched."), pick="thing", optional=True, empty=ANYTHING
+            choice_of("What it meets", pieces, "What is touched."), pick="thing", optional=True, empty=ANYTHING
         )
-        word("touches.1", about, second, partial(_set_touching, index, 1))
+        word("touches.1", about, second, partial(_set_touching, at, 1))
     elif asks == "breaks":
-        about = replace(_choice("When", tuple(body.id for body in level.bodies), "The body."), pick="body")
+        about = replace(choice_of("When", tuple(body.id for body in level.bodies), "The body."), pick="body")
         word("breaks", about, question.breaks)
         made.append(asked)
     elif asks == "counter":
         made.append(asked)
-        word("counter", _choice("Counter", level.counter_names, "The counter."), question.counter)
-        made += _bounds(question, index, "")
+        word("counter", choice_of("Counter", level.counter_names, "The counter."), question.counter)
+        made += _bounds(question, at, "")
     elif asks == "key":
         made.append(asked)
         word("key", replace(fields_of(QuestionDef)["key"], title="Key", optional=False), question.key)
@@ -132,35 +125,46 @@ def _sentence(level: Level, question: QuestionDef, index: int) -> list[Property]
         made.append(asked)
         word("time", replace(fields_of(QuestionDef)["time"], title="After", optional=False), question.time)
     elif asks == "metric":
-        made += [asked, *_metric(level, question, index)]
+        made += [asked, *_metric(level, question, at)]
+    elif question.members:
+        made.append(asked)
+        for place, member in enumerate(question.members):
+            remove = partial(_stop_asking, at, place) if len(question.members) > 1 else None
+            opening, *rest = _sentence(level, member, (*at, place))
+            made += [_indented(each) for each in (replace(opening, remove=remove), *rest)]
     else:
         raise ValueError(f"a form has no question {asks!r}")
     return made
 
 
-def _metric(level: Level, question: QuestionDef, index: int) -> list[Property]:
+def _indented(each: Property) -> Property:
+    return replace(each, label=each.step, about=replace(each.about, title=f"\N{MIDDLE DOT} {each.about.title}"))
+
+
+def _metric(level: Level, question: QuestionDef, at: _At) -> list[Property]:
     assert question.metric is not None
+    into = "".join(f"{place}." for place in at[1:])
     measured = METRICS[question.metric]
     names = tuple(name for name in METRICS if name not in UNASKED and name != "inside")
-    about = _choice("Measure", names, "What is measured.", tuple(METRICS[name].label for name in names))
-    made = [Property("metric", about, question.metric, partial(_set_metric, index))]
+    about = choice_of("Measure", names, "What is measured.", tuple(METRICS[name].label for name in names))
+    made = [Property(f"{into}metric", about, question.metric, partial(_set_metric, at))]
     if measured.takes("particle") or measured.takes("body"):
         needed = bool(measured.needs_one or measured.needs)
-        about = replace(_choice("Of", _things(level), "What it is of."), pick="mover", optional=not needed,
+        about = replace(choice_of("Of", _things(level), "What it is of."), pick="mover", optional=not needed,
                         empty="everything")  # fmt: skip
         subject = question.particle or question.body
-        made.append(Property("subject", about, subject, partial(_set_subject, index)))
+        made.append(Property(f"{into}subject", about, subject, partial(_set_subject, at)))
     if measured.takes("other"):
         about = replace(fields_of(QuestionDef)["other"], title="To", pick="particle")
-        made.append(Property("other", about, question.other, partial(_set_word, index, "other")))
-    return made + _bounds(question, index, measured.unit)
+        made.append(Property(f"{into}other", about, question.other, partial(_set_word, at, "other")))
+    return made + _bounds(question, at, measured.unit)
 
 
-def _bounds(question: QuestionDef, index: int, unit: str) -> list[Property]:
-    about = fields_of(QuestionDef)
+def _bounds(question: QuestionDef, at: _At, unit: str) -> list[Property]:
+    about, into = fields_of(QuestionDef), "".join(f"{place}." for place in at[1:])
     return [
-        Property(name, replace(about[name], unit=unit, empty="no bound"), getattr(question, name),
-                 partial(_set_word, index, name))
+        Property(into + name, replace(about[name], unit=unit, empty="no bound"), getattr(question, name),
+                 partial(_set_word, at, name))
         for name in ("at_least", "at_most")
     ]  # fmt: skip
 
@@ -169,47 +173,59 @@ def _things(level: Level) -> tuple[str, ...]:
     return (*(part.id for part in level.particles), *(body.id for body in level.bodies))
 
 
-def _choice(title: str, names: tuple[str, ...], tip: str, labels: tuple[str, ...] = ()) -> FieldInfo:
-    return FieldInfo("choice", title, choices=names, labels=labels, tooltip=tip)
-
-
 def _of_rule(index: int, field: str, about: FieldInfo, value: Any) -> Property:
     return Property(
-        field, about, value, lambda document, new: _changed(document, index, lambda _, data: {**data, field: new})
+        field, about, value, lambda document, new: change_rule(document, index, lambda _, data: {**data, field: new})
     )
 
 
-def _changed(document: Document, index: int, change: Callable[[Level, _Data], _Data]) -> Document:
-    """The document with a rule that is what `change` makes of its plain values. Raises EditError."""
-    rules = list(document.level.rules)
-    data = change(document.level, plain(rules[index]))
-    others = [rule.id for k, rule in enumerate(rules) if k != index]
-    if data["id"] in others:
-        raise EditError(f'there is a rule "{data["id"]}" already')
-    rules[index] = read_rule(data)
-    return set_rules(document, rules)
+def _asking(at: _At, document: Document, change: Callable[[Level, RuleData], RuleData]) -> Document:
+    """Change a question of a rule, as `_changed`; fields that are None go."""
+
+    def inside(level: Level, when: RuleData, way: _At) -> RuleData:
+        if not way:
+            return {field: value for field, value in change(level, when).items() if value is not None}
+        kind, members = _members(when)
+        members[way[0]] = inside(level, members[way[0]], way[1:])
+        return {kind: tuple(members)}
+
+    return change_rule(document, at[0], lambda level, data: {**data, "when": inside(level, data["when"], at[1:])})
 
 
-def _asking(index: int, document: Document, change: Callable[[Level, _Data], _Data]) -> Document:
-    """Change the question of a rule, as `_changed`; fields that are None go."""
-
-    def new(level: Level, data: _Data) -> _Data:
-        when = change(level, data["when"])
-        return {**data, "when": {field: value for field, value in when.items() if value is not None}}
-
-    return _changed(document, index, new)
+def _members(when: RuleData) -> tuple[str, list[RuleData]]:
+    """What holds of the questions that one asks, and these; of one that asks none, itself alone of which all holds."""
+    return next(((kind, list(when[kind])) for kind in GROUPS if kind in when), ("all", [when]))
 
 
-def _set_word(index: int, field: str, document: Document, value: Any) -> Document:
-    return _asking(index, document, lambda _, when: {**when, field: value})
+def _ask_more(index: int, document: Document) -> Document:
+    def change(_: Level, when: RuleData) -> RuleData:
+        kind, members = _members(when)
+        return {kind: (*members, {"time": FIRST_TIME})}
+
+    return _asking((index,), document, change)
 
 
-def _set_subject(index: int, document: Document, value: Any) -> Document:
-    def change(level: Level, when: _Data) -> _Data:
+def _stop_asking(at: _At, place: int, document: Document) -> Document:
+    """Take one of several questions out; what is left of two stands by itself, unless it must not hold."""
+
+    def change(_: Level, when: RuleData) -> RuleData:
+        kind, members = _members(when)
+        del members[place]
+        return members[0] if len(members) == 1 and kind != "none" else {kind: tuple(members)}
+
+    return _asking(at, document, change)
+
+
+def _set_word(at: _At, field: str, document: Document, value: Any) -> Document:
+    return _asking(at, document, lambda _, when: {**when, field: value})
+
+
+def _set_subject(at: _At, document: Document, value: Any) -> Document:
+    def change(level: Level, when: RuleData) -> RuleData:
         chosen = {} if value is None else _subject_for(level, when, value)
         return {**when, "particle": None, "body": None, **chosen}
 
-    return _asking(index, document, change)
+    return _asking(at, document, change)
 
 
 def _subject_for(level: Level, when: Mapping[str, Any], name: str) -> dict[str, str]:
@@ -221,26 +237,32 @@ def _subject_for(level: Level, when: Mapping[str, Any], name: str) -> dict[str, 
     return named
 
 
-def _set_touching(index: int, place: int, document: Document, value: Any) -> Document:
-    def change(_: Level, when: _Data) -> _Data:
+def _set_touching(at: _At, place: int, document: Document, value: Any) -> Document:
+    def change(_: Level, when: RuleData) -> RuleData:
         names: list[Any] = list(when["touches"])[:2]
         names[place : place + 1] = [] if value is None else [value]
         return {**when, "touches": tuple(names)}
 
-    return _asking(index, document, change)
+    return _asking(at, document, change)
 
 
-def _set_metric(index: int, document: Document, value: Any) -> Document:
-    return _asking(index, document, lambda level, when: _question(level, "metric", when, value))
+def _set_metric(at: _At, document: Document, value: Any) -> Document:
+    return _asking(at, document, lambda level, when: _question(level, "metric", when, value))
 
 
-def _set_asked(index: int, document: Document, value: Any) -> Document:
+def _set_asked(at: _At, document: Document, value: Any) -> Document:
     """Set the question of a rule, of the same things where it can be."""
-    return _asking(index, document, lambda level, when: _question(level, value, when, "y"))
+    return _asking(at, document, lambda level, when: _question(level, value, when, "y"))
 
 
-def _question(level: Level, asks: str, old: _Data, metric: str) -> _Data:
+def _question(level: Level, asks: str, old: RuleData, metric: str) -> RuleData:
     """A question of a kind, with what another one named where that fits."""
+    if asks in GROUPS:
+        return {asks: tuple(_members(old)[1])}
+    if old.keys() & set(GROUPS):
+        first: RuleData = _members(old)[1][0]
+        is_same = _asked(QuestionDef.model_validate(first)) == asks
+        return first if is_same else _question(level, asks, first, metric)
     things, zones = _things(level), [zone.id for zone in level.zones]
     named = old.get("body") or old.get("particle") or (old.get("touches") or (None,))[0] or old.get("breaks")
     thing = named if named in things else old.get("particle") or (things[0] if things else None)
@@ -264,16 +286,16 @@ def _question(level: Level, asks: str, old: _Data, metric: str) -> _Data:
             raise EditError("add a counter first, below")
         return {"counter": level.counters[0].id, "at_least": 10.0}
     if asks in ("key", "time"):
-        return {"key": FIRST_KEY} if asks == "key" else {"time": 10.0}
+        return {"key": FIRST_KEY} if asks == "key" else {"time": FIRST_TIME}
     if asks == "metric":
         return _measuring(level, metric, thing)
     raise ValueError(f"a form has no question {asks!r}")
 
 
-def _measuring(level: Level, metric: str, thing: str | None) -> _Data:
+def _measuring(level: Level, metric: str, thing: str | None) -> RuleData:
     measured = METRICS[metric]
     low, high = measured.usual
-    made: _Data = {"metric": metric, "at_least": low, "at_most": high}
+    made: RuleData = {"metric": metric, "at_least": low, "at_most": high}
     if measured.needs_one or "particle" in measured.needs:
         if thing is None:
             raise EditError("draw a particle or a body first, for the rule to measure")
@@ -285,140 +307,6 @@ def _measuring(level: Level, metric: str, thing: str | None) -> _Data:
             raise EditError("a distance needs two things; draw another one")
         made["other"] = others[0]
     return made
-
-
-# Actions.
-
-
-def _action_properties(level: Level, rule: RuleDef, index: int) -> tuple[Property, ...]:
-    made = []
-    for number, action in enumerate(rule.then):
-        does = action.done[0]
-        about = _choice("Do" if number == 0 else "and", tuple(_DOES), "What is done.", tuple(_DOES.values()))
-        remove = partial(_delete_action, index, number) if len(rule.then) > 1 else None
-        name = f"then.{number}"
-        made.append(Property(name, about, does, partial(_set_does, index, number), remove=remove))
-        made += _value_properties(level, action, does, partial(_set_value, index, number), name)
-    add = FieldInfo("part", "Do more", tooltip="Another thing that is done then.")
-    made.append(Property("more", add, False, lambda document, _: _add_action(document, index)))
-    return tuple(made)
-
-
-def _value_properties(
-    level: Level, action: ActionDef, does: str, write: Callable[[str, Document, Any], Document], name: str
-) -> list[Property]:
-    about = fields_of(ActionDef)
-    fields = [does, *(field for field, owners in BELONGS.items() if does in owners and field != "stars")]
-    made = []
-    for field in fields:
-        if field == "checkpoint":
-            continue
-        each, value = replace(about[field], optional=False, title=_value_title(field)), getattr(action, field)
-        names = _choices_of(level, field)
-        if names is not None:
-            each = _choice(each.title, names, each.tooltip)
-            each = replace(each, pick="body") if field in ("cut", "body") else each
-        elif field in ("pin", "unpin"):
-            each = replace(each, pick="particle")
-        elif each.kind == "point":
-            made.append(Property(f"{name}.{field}", each, value, partial(_set_axes, write, field, value)))
-            continue
-        made.append(Property(f"{name}.{field}", each, value, partial(write, field)))
-    if action.stars is not None:
-        text = f"{action.stars.second:g}, {action.stars.third:g} {action.stars.counter or 's'}"
-        made.append(
-            Property(f"{name}.stars", FieldInfo("text", "Stars", tooltip="Bounds of two and three stars."), text)
-        )
-    return made
-
-
-def _set_axes(
-    write: Callable[..., Document], field: str, old: tuple[float, float], document: Document, value: Any
-) -> Document:
-    return write(field, document, with_axes(value, old))
-
-
-def _value_title(field: str) -> str:
-    titles = {"win": "Words", "fail": "Words", "say": "Words", "count": "Counter", "by": "By", "during": "Within",
-              "drive": "What", "value": "How", "sound": "Which", "sag": "Sag, of its height", "body": "Body",
-              "cut": "What", "pin": "Particle", "unpin": "Particle", "gravity": "To", "wind": "To"}  # fmt: skip
-    return titles[field]
-
-
-def _choices_of(level: Level, field: str) -> tuple[str, ...] | None:
-    if field in ("cut", "body"):
-        return tuple(body.id for body in level.bodies)
-    if field == "count":
-        return level.counter_names
-    return tuple(part.name for part in actuators(level)) if field == "drive" else None
-
-
-def _acting(index: int, document: Document, change: Callable[[Level, list[_Data]], list[_Data]]) -> Document:
-    return _changed(document, index, lambda level, data: {**data, "then": tuple(change(level, list(data["then"])))})
-
-
-def _set_value(index: int, number: int, field: str, document: Document, value: Any) -> Document:
-    def change(_: Level, then: list[_Data]) -> list[_Data]:
-        return [{**each, field: value} if k == number else each for k, each in enumerate(then)]
-
-    return _acting(index, document, change)
-
-
-def _set_does(index: int, number: int, document: Document, value: Any) -> Document:
-    if value == "count" and not document.level.counters:
-        document = add_counter(document)
-    if value == "sag":
-        return _softened(document, index, number)
-    return _set_action(document, index, number, _first_action(document.level, value))
-
-
-def _set_action(document: Document, index: int, number: int, action: _Data) -> Document:
-    return _acting(index, document, lambda _, then: [action if k == number else each for k, each in enumerate(then)])
-
-
-def _softened(document: Document, index: int, number: int) -> Document:
-    """Set an action to soften the first body that can be."""
-    for body in document.level.bodies:
-        try:
-            return _set_action(document, index, number, {"sag": SOFT, "body": body.id})
-        except EditError:
-            continue
-    raise EditError("no body here can be made soft: draw a jelly first")
-
-
-def _add_action(document: Document, index: int) -> Document:
-    return _acting(index, document, lambda _, then: [*then, {"sound": "bell"}])
-
-
-def _delete_action(index: int, number: int, document: Document) -> Document:
-    return _acting(index, document, lambda _, then: [each for k, each in enumerate(then) if k != number])
-
-
-def _first_action(level: Level, does: str) -> _Data:
-    """A new action of a kind, with something of the level in it. Raises EditError where there is nothing for it."""
-    simple: dict[str, Any] = {
-        "win": WON, "fail": LOST, "say": "Well done.", "sound": "bell", "checkpoint": True,
-        "gravity": level.settings.gravity, "wind": (2.0, 0.0),
-    }  # fmt: skip
-    if does in simple:
-        return {does: simple[does]}
-    if does == "count":
-        return {"count": level.counters[0].id}
-    if does == "drive":
-        parts = actuators(level)
-        if not parts:
-            raise EditError("nothing is driven here: give a wheel a motor, or a loose spring a hydraulic, first")
-        return {"drive": parts[0].name}
-    if does in ("pin", "unpin"):
-        things = [*(part.id for part in level.particles), *(f"{body.id}.0" for body in level.bodies)]
-        if not things:
-            raise EditError("draw a particle first")
-        return {does: things[0]}
-    if does == "cut":
-        if not level.bodies:
-            raise EditError("draw a body first, for the rule to cut")
-        return {"cut": level.bodies[0].id}
-    raise ValueError(f"there is no first action {does!r}")
 
 
 # Counters.

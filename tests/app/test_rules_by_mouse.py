@@ -1,0 +1,137 @@
+"""The form of a rule by mouse alone: stars, several questions, and what is kept as a word of it changes."""
+
+import pygame
+import pytest
+
+from sandbox.editor.rule_text import rule_text
+from sandbox.level.document.canonical import level_text
+from sandbox.level.reading.parse import parse_level
+from sandbox.session.outcome import outcome
+from tests.app.conftest import small_level
+
+BALLS = [{"id": f"ball {k}", "position": [k, 1.0], "radius": 0.2} for k in (1, 2, 3)]
+GOAL = {
+    "id": "goal", "when": {"metric": "inside", "particle": "ball 1", "zone": "basket"}, "then": [{"win": "In!"}],
+}  # fmt: skip
+PARTS = {
+    "terrain": [{"id": "floor", "polyline": [[-3, -2], [7, -2]]}],
+    "zones": [{"id": "basket", "box": [0.5, 0.5, 3.5, 1.5]}],
+    "particles": BALLS, "counters": [{"id": "score"}], "hands": {"at_most": {"add": 3}}, "rules": [GOAL],
+}  # fmt: skip
+
+
+class Maker:
+    """A person at the page of rules, who has a mouse and types."""
+
+    def __init__(self, driver):
+        self.driver = driver
+        driver.editor.side.choose("rules")
+        driver.frames(2)
+
+    @property
+    def page(self):
+        return self.driver.editor.side.page
+
+    @property
+    def rules(self):
+        return self.driver.editor.document.level.rules
+
+    def press(self, name):
+        """Scroll to a widget of the form, and click it."""
+        widget = self.page.form._named[name]
+        self.page.form.area.show_widget(widget)
+        self.driver.frames(2)
+        self.driver.click_widget(widget)
+
+    def choose(self, name, text):
+        """Open a menu of the form, and click the row with that text."""
+        self.press(name)
+        menu = self.page.form.pickers[name]._menu
+        row = next(k for k, row in enumerate(menu.rows) if row.text == text)
+        menu._reveal(row)
+        self.driver.frames(2)
+        self.driver.click((menu.rect.centerx, menu.rect.top + menu._tops[row] - round(menu._offset) + 8))
+        self.driver.frames(2)
+
+    def type(self, name, text):
+        """Click a line of the form, type into it in place of what is there, and press Enter."""
+        self.press(name)
+        self.driver.key(pygame.K_a, pygame.KMOD_CTRL)
+        self.driver.type(text)
+        self.driver.key(pygame.K_RETURN)
+
+    def file(self):
+        """The level as its file reads it."""
+        text = level_text(self.driver.editor.document.level)
+        return parse_level(text.encode(), "file")
+
+
+@pytest.fixture
+def maker(edit):
+    return lambda **changes: Maker(edit(small_level(**{**PARTS, **changes})))
+
+
+def test_stars_are_earned_by_time_by_a_counter_and_by_parts_left(maker):
+    made = maker()
+    made.choose("then.0.stars", "by time")
+    made.type("then.0.stars.second 0", "20")
+    made.type("then.0.stars.third 0", "8")
+    stars = made.file().rules[0].then[0].stars
+    assert (stars.counter, stars.second, stars.third) == (None, 20.0, 8.0)
+    for name in ("score", "Parts left"):
+        made.choose("then.0.stars", name)
+        stars = made.file().rules[0].then[0].stars
+        assert (stars.counter, stars.second, stars.third) == (name, 1.0, 2.0), made.driver.notices
+    assert any("Three stars from" in str(each.about) for each in made.page.form.properties.values())
+    made.choose("then.0.stars", "three for each win")
+    assert made.file().rules[0].then[0].stars is None
+    assert made.driver.editor.history.labels[-1] == "Rule goal: stars"
+
+
+def test_a_win_in_play_earns_the_stars_that_the_form_gave(maker):
+    made = maker()
+    made.choose("then.0.stars", "by time")
+    made.type("then.0.stars.third 0", "0.0001")
+    made.driver.key(pygame.K_e)
+    made.driver.frames(30)
+    assert outcome(made.driver.playback.session.level, made.driver.world).stars == 2
+
+
+def test_a_look_at_what_else_a_rule_could_do_keeps_its_words_and_says_that_stars_go(maker):
+    made = maker()
+    made.choose("then.0.stars", "by time")
+    for text in ("lose", "say", "win"):
+        made.choose("then.0", text)
+    action = made.rules[0].then[0]
+    assert (action.win, action.stars) == ("In!", None)
+    assert any("the stars went with the win" in notice.lower() for notice in made.driver.notices)
+    made.choose("then.0", "pin")
+    made.driver.editor.edit("Other", lambda document: made.page.form.properties["then.0.pin"].set(document, "ball 3"))
+    made.driver.frames(2)
+    made.choose("then.0", "unpin")
+    assert made.rules[0].then[0].unpin == "ball 3"
+
+
+def test_questions_that_ask_others_are_built_changed_and_taken_apart(maker):
+    made = maker()
+    made.press("ask")
+    made.choose("1.asks", "touches")
+    made.choose("1.touches.0", "ball 2")
+    made.choose("1.touches.1", "floor")
+    made.choose("asks", "one of these holds")
+    made.choose("0.asks", "all of these hold")
+    made.choose("0.0.subject", "ball 3")
+    text = "When (ball 3 is inside basket) or ball 2 touches floor: win \N{LEFT DOUBLE QUOTATION MARK}In!"
+    assert rule_text(made.file().rules[0]).startswith(text)
+    made.choose("0.asks", "is inside")
+    made.press("1.touches.0 remove")
+    assert rule_text(made.file().rules[0]).startswith("When ball 3 is inside basket: win")
+
+
+def test_every_question_of_a_file_is_shown_by_words_to_change_and_none_as_grey_text(maker):
+    when = {"all": [{"touches": ["ball 1", "floor"]}, {"none": [{"key": "g"}, {"any": [{"time": 3.0}]}]}]}
+    made = maker(rules=[{**GOAL, "when": when}])
+    assert not [each.field for each in made.page.form.properties.values() if not each.editable]
+    made.type("1.1.0.time 0", "4")
+    changed = {"all": [when["all"][0], {"none": [{"key": "g"}, {"any": [{"time": 4.0}]}]}]}
+    assert made.file().rules == maker(rules=[{**GOAL, "when": changed}]).file().rules
