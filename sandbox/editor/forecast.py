@@ -18,6 +18,7 @@ from sandbox.editor.lint.finding import called, falling_particles
 from sandbox.editor.scene import Scene, driven_items, make_scene
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from sandbox.session.check_run import HeldKeys
@@ -187,7 +188,7 @@ class Firing:
                 session.submit(command, gesture)
             session.advance()
             for rule in np.flatnonzero(session.world.rule_last == session.tick).tolist():
-                self.times[self.level.rules[rule].id].append(session.tick / rate)
+                self.times[run_rules(self.level)[rule].id.partition(":")[0]].append(session.tick / rate)
             yield None
 
 

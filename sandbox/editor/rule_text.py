@@ -1,9 +1,14 @@
 """Rules as sentences, and what they name."""
 
+from collections.abc import Sequence
 from typing import assert_never
 
 from sandbox.level.checks import METRICS, Metric
+from sandbox.level.plan.run_rules import several
 from sandbox.level.rules.rule import ActionDef, QuestionDef, RuleDef
+
+# Of more things than this a sentence says how many they are.
+MOST_NAMED = 3
 
 
 def rule_text(rule: RuleDef) -> str:
@@ -22,7 +27,8 @@ def question_text(question: QuestionDef) -> str:
             each = {"all": " and ", "any": " or ", "none": " or "}[asks].join(map(_member_text, value))
             return f"none of this: {each}" if asks == "none" else each
         case "touches":
-            return f"{value[0]} touches {value[1] if len(value) > 1 else 'anything'}"
+            one, *others = value if several(question)[0] == "" else (_subject(question), *value)
+            return f"{one} touches {others[0] if others else 'anything'}"
         case "crosses":
             return f"{_subject(question)} crosses {value}"
         case "breaks":
@@ -39,7 +45,15 @@ def question_text(question: QuestionDef) -> str:
             assert_never(asks)
 
 
+def listed(names: Sequence[str]) -> str:
+    """Several things in words: their names, or how many they are."""
+    return ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} things"
+
+
 def _subject(question: QuestionDef) -> str:
+    field, names = several(question)
+    if field:
+        return f"{field.replace('_', ' ')} {listed(names)}"
     return question.particle or question.body or "everything"
 
 
@@ -49,7 +63,7 @@ def _metric_text(question: QuestionDef, metric: Metric) -> str:
         deep = f" by {bounds}" if question.at_least or question.at_most is not None else ""
         return f"{subject} is inside {question.zone}{deep}"
     measured = METRICS[metric]
-    of = f" of {subject}" if question.particle or question.body else ""
+    of = f" of {subject}" if question.particle or question.body or several(question)[0] else ""
     to = f" to {question.other}" if question.other else ""
     return f"{measured.label}{of}{to}" + (f" is {bounds} {measured.unit}".rstrip() if bounds else "")
 
@@ -94,6 +108,7 @@ def action_text(action: ActionDef) -> str:
 def named_things(question: QuestionDef) -> list[str]:
     """Bodies, particles and terrain that a question names, its members too."""
     names = [question.particle, question.other, question.body, question.breaks, *(question.touches or ())]
+    names += several(question)[1]
     return [name for name in names if name] + [name for each in question.members for name in named_things(each)]
 
 

@@ -21,6 +21,7 @@ from sandbox.level.format.limits import (
     PARTICLE_LIMIT,
     SPRING_LIMIT,
 )
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.rules.player_limits import words_of
 from sandbox.level.rules.rule import ActionDef
@@ -193,7 +194,7 @@ def about(world: LevelWorld, words: int) -> dict[str, Any]:
             "area": world.area_names,
             "form": [form.name for form in world.forms],
         },
-        "rules": [[_action(action, world) for action in rule.then] for rule in world.level.rules],
+        "rules": [[_action(action, world) for action in rule.then] for rule in run_rules(world.level)],
         "second": {"particle": dict(world.particle_naming.second), "spring": dict(world.spring_naming.second)},
     }
 

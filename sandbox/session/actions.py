@@ -10,6 +10,7 @@ import numpy as np
 
 from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.commands.command import RULE
 from sandbox.physics.keeping.equipment import Firmness
@@ -34,7 +35,7 @@ class RuleActions:
         """
         for rule in np.flatnonzero(world.rule_due).tolist():
             world.rule_due[rule] = False
-            for action in self._level.rules[rule].then:
+            for action in run_rules(self._level)[rule].then:
                 if action.win is not None and not world.rule_stars[rule]:
                     world.rule_stars[rule] = stars_of(action.stars, self._level, world, int(world.rule_first[rule]))
                 if action.count is not None:

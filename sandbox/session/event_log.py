@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sandbox.level.assembly.build_world import LevelWorld
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.plan.rules import zones_of
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.rule import ActionDef
 from sandbox.level.things.contacts import ContactListener
 from sandbox.level.things.names import ThingNames, thing_of, thing_of_spring
@@ -300,7 +301,7 @@ def _of_rules(level: Level, tick: int, kept: TickEvents) -> Iterator[Event]:
     """Events of the rules that fired in a tick."""
     values = dict(zip(level.counter_names, kept.counters, strict=False))
     for number in kept.rules:
-        rule = level.rules[number]
+        rule = run_rules(level)[number]
         for action in rule.then:
             if action.count is not None:
                 values[action.count] = values.get(action.count, 0.0) + action.by

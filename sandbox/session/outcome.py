@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from sandbox.level.document.model import Level
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.rule import ActionDef, StarsDef
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
@@ -55,7 +56,7 @@ def outcome_data(found: Outcome | None, rate: int) -> dict[str, Any] | None:
 
 def _ending(level: Level, rule: int) -> ActionDef | None:
     """The first action of a rule that wins or loses."""
-    return next((one for one in level.rules[rule].then if one.win is not None or one.fail is not None), None)
+    return next((one for one in run_rules(level)[rule].then if one.win is not None or one.fail is not None), None)
 
 
 def stars_of(stars: StarsDef | None, level: Level, state: World | Snapshot, tick: int) -> int:
@@ -89,7 +90,7 @@ def last_checkpoint(level: Level, state: World | Snapshot) -> int | None:
     """
     result = outcome(level, state)
     last = state.rule_last.tolist()
-    ticks = [last[rule] for rule, each in enumerate(level.rules) if any(action.checkpoint for action in each.then)]
+    ticks = [last[rule] for rule, each in enumerate(run_rules(level)) if any(action.checkpoint for action in each.then)]
     tick = max(ticks, default=-1)
     if tick < 0 or (result is not None and (result.is_won or tick >= result.tick)):
         return None

@@ -3,6 +3,7 @@
 import pygame
 import pytest
 
+from sandbox.editor.items import Item
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.parse import parse_level
@@ -124,7 +125,7 @@ def test_questions_that_ask_others_are_built_changed_and_taken_apart(maker):
     text = "When (ball 3 is inside basket) or ball 2 touches floor: win \N{LEFT DOUBLE QUOTATION MARK}In!"
     assert rule_text(made.file().rules[0]).startswith(text)
     made.choose("0.asks", "is inside")
-    made.press("1.touches.0 remove")
+    made.press("1.many remove")
     assert rule_text(made.file().rules[0]).startswith("When ball 3 is inside basket: win")
 
 
@@ -135,3 +136,52 @@ def test_every_question_of_a_file_is_shown_by_words_to_change_and_none_as_grey_t
     made.type("1.1.0.time 0", "4")
     changed = {"all": [when["all"][0], {"none": [{"key": "g"}, {"any": [{"time": 4.0}]}]}]}
     assert made.file().rules == maker(rules=[{**GOAL, "when": changed}]).file().rules
+
+
+def test_a_rule_names_several_things_that_are_selected_typed_and_picked(maker):
+    made = maker()
+    made.driver.editor.select(frozenset(Item("particle", f"ball {k}") for k in (1, 2)))
+    made.press("many all_of")
+    assert made.file().rules[0].when.all_of == ("ball 1", "ball 2")
+    made.press("several pick")
+    made.driver.click_at(3, 1)
+    made.driver.frames(2)
+    made.press("several pick")
+    made.driver.click_at(1, 1)
+    made.driver.frames(2)
+    assert made.file().rules[0].when.all_of == ("ball 2", "ball 3")
+    made.choose("asks", "touches")
+    made.choose("touches.1", "floor")
+    made.type("several 0", "ball 1, rope")
+    assert rule_text(made.file().rules[0]).startswith("When all of ball 1, rope touches floor: win")
+    made.type("several 0", "bell 1")
+    assert any('there is no body, loose particle or group "bell 1"' in notice for notice in made.driver.notices)
+    made.press("many each_of")
+    assert made.rules[0].once and made.page.form.properties["once"].about.title == "Once for each"
+    made.press("many one")
+    assert made.file().rules[0].when.touches == ("ball 1", "floor")
+
+
+def test_three_selected_balls_are_counted_once_each_by_two_clicks_and_the_third_wins(maker):
+    """The finding: three balls on a belt took three rules, and two that bobbed won."""
+    made = maker(rules=[], zones=[{"id": "basket", "box": [0.0, -2.0, 6.0, -1.2]}], settings={"gravity": [0.0, -9.8]},
+                 particles=[{**ball, "restitution": 0.8} for ball in BALLS])  # fmt: skip
+    made.driver.editor.select(frozenset(Item("particle", f"ball {k}") for k in (1, 2, 3)))
+    made.driver.click_widget(made.page.buttons["Add"])
+    made.driver.frames(2)
+    made.driver.choose("Count each of ball 1, ball 2, ball 3 once in basket")
+    made.driver.key(pygame.K_e)
+    made.driver.frames(240)
+    assert made.driver.world.counter[0] == 3.0
+    made.driver.key(pygame.K_e)
+    made.driver.frames(240)
+    row = made.page.list.rows[0]
+    assert row.text.startswith("When each of ball 1, ball 2, ball 3 crosses basket: score +1")
+    assert row.detail.count(",") == 2 and row.detail.startswith("count: fired at")
+
+
+def test_a_group_that_is_selected_whole_is_named_by_its_name(maker):
+    made = maker(particles=[{**ball, "group": "trio"} for ball in BALLS])
+    made.driver.click_at(1, 1)
+    made.press("many any_of")
+    assert made.file().rules[0].when.any_of == ("trio",)

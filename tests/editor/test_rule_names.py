@@ -9,7 +9,7 @@ from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.edits.copying import duplicate, paste
 from sandbox.editor.edits.deleting import break_apart, delete
 from sandbox.editor.edits.fields import rename, set_field, set_level_field
-from sandbox.editor.edits.grouping import reorder
+from sandbox.editor.edits.grouping import rename_group, reorder, ungroup
 from sandbox.editor.edits.names import lost_rules
 from sandbox.editor.edits.placing import cut_springs
 from sandbox.editor.items import Item
@@ -132,3 +132,33 @@ def test_what_hands_may_touch_follows_what_is_renamed_deleted_and_copied():
     assert renamed.level.hands.bodies == ("string", "ball")
     assert delete(only(renamed, ("particle", "ball"))).level.hands.bodies == ("string",)
     assert duplicate(only(start, ("body", "rope")), 1.0, 0.0).level.hands == start.level.hands
+
+
+SEVERAL = [{"when": {"crosses": "basket", "each_of": ["pair", "rope"]}}, {"when": {"touches": [], "any_of": ["ball"]}}]
+PAIR = [
+    {"id": "ball", "position": [-2.0, 2.0], "group": "pair"},
+    {"id": "peg", "position": [-3.0, 2.0], "group": "pair"},
+]
+
+
+def several(made):
+    return [rule.when.each_of or rule.when.any_of for rule in made.level.rules]
+
+
+def test_what_stands_among_several_follows_and_goes_alone_and_with_the_last_goes_the_rule():
+    made = document(SEVERAL, particles=PAIR)
+    assert several(rename(made, Item("body", "rope"), "cord")) == [("pair", "cord"), ("ball",)]
+    without = delete(only(made, ("particle", "ball")))
+    assert several(without) == [("pair", "rope")]
+    assert several(delete(only(without, ("body", "rope")))) == [("pair",)]
+    assert lost_rules(made.level, without.level) == ["rule 1"]
+
+
+def test_rules_follow_a_group_that_gets_another_name_and_let_go_of_one_that_is_dissolved():
+    made = document(SEVERAL, particles=PAIR)
+    assert several(rename_group(made, "pair", "twins")) == [("twins", "rope"), ("ball",)]
+    both = only(made, ("particle", "ball"), ("particle", "peg"))
+    assert several(ungroup(both)) == [("rope",), ("ball",)]
+    assert several(ungroup(only(made, ("particle", "peg")))) == several(made)
+    for each in (ungroup(both), rename_group(made, "pair", "twins")):
+        assert parse_level(level_text(each.level).encode(), "again").rules == each.level.rules

@@ -49,6 +49,22 @@ QUESTIONS = {
                                     '"scor"; did you mean "score"?'),
     "inside others": ({"all": [{"any": [{"breaks": "ball"}]}]}, 'rules.0.when.all.0.any.0.breaks: there is no body '
                       '"ball"'),
+    "several, one not there": ({"crosses": "basket", "any_of": ["ball", "bal"]}, "rules.0.when.any_of.1: there is no "
+                               'body, loose particle or group "bal"; did you mean "ball"?'),
+    "one thing beside several": (INSIDE | {"all_of": ["rope"]}, "rules.0.when.particle: stands beside all_of; take one "
+                                 "of them out"),
+    "several things of a key": ({"key": "a", "any_of": ["ball"]}, "rules.0.when.any_of: belongs to another question "
+                                "than key; take it out"),
+    "two that several touch": ({"touches": ["ball", "rope"], "any_of": ["ball"]}, "rules.0.when.touches: names at most "
+                               "one thing that those of any_of touch"),
+    "one of several and itself": ({"touches": ["ball"], "any_of": ["ball", "rope"]}, 'rules.0.when.touches: "ball" '
+                                  "does not touch itself; name two things"),
+    "nothing that touches": ({"touches": []}, "rules.0.when.touches: names nothing; name what touches, or several "
+                             "things in any_of"),
+    "each of two lists": ({"all": [{"touches": [], "each_of": ["ball"]}, {"touches": [], "each_of": ["rope"]}]},
+                          "rules.0.when: says each_of twice; a rule is of each of one list"),
+    "a metric of the whole": ({"metric": "settled", "any_of": ["rope", "ball"]}, 'rules.0.when.any_of: "settled" is '
+                              "measured of the whole level; take the particle out"),
     "a field of another question": ({"time": 1, "at_most": 2}, "rules.0.when.at_most: belongs to another question than "
                                     "time; take it out"),
 }  # fmt: skip

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.base.sentences import sentence
 from sandbox.level.document.model import Level
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.analysis.stability import stability_shares
@@ -111,7 +112,7 @@ class Fired:
         if not fired:
             return
         for rule in fired:
-            self._actions.extend(self._level.rules[rule].then)
+            self._actions.extend(run_rules(self._level)[rule].then)
         result = outcome(self._level, world)
         self.ended = self.ended or (result is not None and result.tick == world.tick)
 

@@ -26,6 +26,7 @@ from sandbox.level.document.model import ContactsDef, Level, Settings
 from sandbox.level.format.limits import DEFAULT_MATERIAL, GRAVITY_LIMIT
 from sandbox.level.format.quantities import significant
 from sandbox.level.plan.actuators import driving_keys
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.rules.player_limits import left_of
 from sandbox.level.rules.rule import has_clock
@@ -135,7 +136,7 @@ def _goals(level: Level, world: World) -> dict[str, Any]:
     """A level's goal and counters, and the budgets of its hands, as a page shows them."""
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
     counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
-    stars = {rule: words for rule in range(len(level.rules)) if (words := star_words(level, rule))}
+    stars = {rule: words for rule in range(len(run_rules(level))) if (words := star_words(level, rule))}
     return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars}
 
 

@@ -1,11 +1,12 @@
 """Groups, and the order in which things are drawn."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_field
-from sandbox.editor.edits.names import free_ids, with_springs_followed
+from sandbox.editor.edits.names import followed, free_ids, with_springs_followed, with_things_followed
 from sandbox.editor.items import (
     PARTS,
     Definition,
@@ -81,7 +82,8 @@ def rename_group(document: Document, old: str, new: str) -> Document:
     if new != old and new in taken_groups(level):
         raise EditError(f"there is a group {shown(new)} already")
     members = frozenset(item for item, name in groups_of(level).items() if name == old)
-    return set_field(document, members, "group", new)
+    rules = followed(level.rules, one_of=lambda name: new if name == old else name)
+    return set_field(replace(document, level=with_same(level, rules=rules)), members, "group", new)
 
 
 def shift(document: Document, later: bool) -> Document:
@@ -128,7 +130,8 @@ def _grouped(document: Document, name: str | None) -> Document:
         return part if isinstance(part, ZoneDef) or part.group == name else replaced(part, group=name)
 
     level = changed(document.level, document.selection, regrouped)
-    return Document(level, document.selection)
+    # Rules let go of a group that is gone.
+    return Document(with_things_followed(level, lambda name: name), document.selection)
 
 
 def _order(chosen: Sequence[bool], to: Place) -> list[int]:

@@ -7,6 +7,7 @@ from typing import Any
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import TEXT_LIMIT
 from sandbox.level.format.quantities import replaced
+from sandbox.level.plan.run_rules import members_of, several
 from sandbox.level.rules.rule import ActionDef, QuestionDef, RuleDef
 
 # What becomes of a reference or a name: another one, or None where what it names is gone.
@@ -115,13 +116,20 @@ def _same(name: str) -> str:
 
 
 def followed(
-    rules: Sequence[RuleDef], thing: Rewire = _same, counter: Rewire = _same, spring: Rewire = _same
+    rules: Sequence[RuleDef],
+    thing: Rewire = _same,
+    counter: Rewire = _same,
+    spring: Rewire = _same,
+    one_of: Rewire | None = None,
 ) -> tuple[RuleDef, ...]:
-    """The rules with other names in them: of things, of counters, of loose springs (`:number`)."""
+    """The rules with other names in them: of things, of counters, of loose springs (`:number`).
+
+    one_of: of what stands among several, of which the rest stays; None: as of things.
+    """
     found = []
     for rule in rules:
         try:
-            when = _question(rule.when, thing, counter)
+            when = _question(rule.when, thing, counter, one_of or thing)
             then = tuple(_action(action, thing, counter, spring) for action in rule.then)
         except _GoneError:
             continue
@@ -138,7 +146,13 @@ def with_springs_followed(level: Level, rules: Sequence[RuleDef], kept: Sequence
 
 def with_things_followed(level: Level, thing: Rewire) -> Level:
     """The level with rules and hands that name things as they are called now; hands let go what is gone."""
-    level = _with(level, followed(level.rules, thing))
+    there = members_of(level)
+
+    def one_of(name: str) -> str | None:
+        new = thing(name)
+        return new if new in there else None
+
+    level = _with(level, followed(level.rules, thing, one_of=one_of))
     if level.hands is None or level.hands.bodies is None:
         return level
     bodies = tuple(name for name in map(thing, level.hands.bodies) if name is not None)
@@ -172,17 +186,22 @@ def _changed(part: Any, changes: dict[str, Any]) -> Any:
     return replaced(part, **changes) if changes else part
 
 
-def _question(question: QuestionDef, thing: Rewire, counter: Rewire) -> QuestionDef:
+def _question(question: QuestionDef, thing: Rewire, counter: Rewire, one_of: Rewire) -> QuestionDef:
     changes: dict[str, Any] = {
         field: _new(name, thing) for field in _OF_QUESTIONS if (name := getattr(question, field)) is not None
     }
+    field, names = several(question)
+    if field:
+        changes[field] = tuple(new for new in map(one_of, names) if new is not None)
+        if not changes[field]:
+            raise _GoneError
     if question.touches is not None:
         changes["touches"] = tuple(_new(name, thing) for name in question.touches)
     if question.counter is not None:
         changes["counter"] = _new(question.counter, counter)
     for field in question.asked:
         if question.members and field in ("all", "any", "none"):
-            members = tuple(_question(member, thing, counter) for member in question.members)
+            members = tuple(_question(member, thing, counter, one_of) for member in question.members)
             is_same = all(new is old for new, old in zip(members, question.members, strict=True))
             changes[field] = question.members if is_same else members
     changed: QuestionDef = _changed(question, changes)

@@ -10,9 +10,11 @@ from sandbox.editor.document import Document, EditError, checked, first_fault
 from sandbox.editor.edits.fields import with_tuples
 from sandbox.editor.edits.names import followed, free_ids
 from sandbox.editor.items import chosen_bodies, chosen_particles, chosen_zones
+from sandbox.editor.rule_text import listed
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import replaced
+from sandbox.level.plan.run_rules import members_of
 from sandbox.level.rules.rule import CounterDef, RuleDef
 
 # What a new rule says, and the key that a new one asks for.
@@ -107,50 +109,71 @@ def subject_of(level: Level, name: str) -> dict[str, str]:
     return {"body" if any(body.id == name for body in level.bodies) else "particle": name}
 
 
+def duplicate_rule(document: Document, index: int) -> Document:
+    """Put a copy of a rule behind it, by a free name."""
+    rules = list(document.level.rules)
+    (name,) = free_ids({rule.id for rule in rules}, [rules[index].id])
+    return set_rules(document, [*rules[: index + 1], replaced(rules[index], id=name), *rules[index + 1 :]])
+
+
+def chosen_movers(document: Document) -> list[str]:
+    """Names of the selected bodies and loose particles; of a group that is selected whole, the group's."""
+    level, members = document.level, members_of(document.level)
+    movers: list[Any] = [*chosen_particles(level, document.selection), *chosen_bodies(level, document.selection)]
+    chosen = {part.id for part in movers}
+    whole = {part.group for part in movers if part.group is not None and chosen.issuperset(members[part.group])}
+    return list(dict.fromkeys(part.group if part.group in whole else part.id for part in movers))
+
+
 def templates(document: Document) -> list[Template]:
-    """Rules to begin with, filled in with what is selected, or was drawn last."""
-    level, selection = document.level, document.selection
+    """Rules to begin with, filled in with all that is selected, or with what was drawn last."""
+    level, selection, members = document.level, document.selection, members_of(document.level)
     zones = chosen_zones(level, selection) or list(level.zones)
     zone = zones[-1].id if zones else None
-    balls: list[Any] = [*chosen_particles(level, selection), *chosen_bodies(level, selection)]
-    balls += [part for part in level.particles if not part.pinned]
-    thing = next((part.id for part in [*balls, *level.bodies, *level.particles]), None)
-    ground = [piece.id for piece in level.terrain] + [body.id for body in level.bodies if body.id != thing]
+    there = [*(part.id for part in level.particles if not part.pinned), *(body.id for body in level.bodies)]
+    names = chosen_movers(document) or [*there, *(part.id for part in level.particles)][:1]
+    things = members.things(names)
+    ground = [piece.id for piece in level.terrain] + [body.id for body in level.bodies if body.id not in things]
     other = ground[0] if ground else "walls" if level.walls is not None else None
     bodies = chosen_bodies(level, selection) or list(level.bodies)
-    body = bodies[0].id if bodies else None
+    body, is_one = bodies[0].id if bodies else None, len(things) < 2
 
-    def of(data: dict[str, Any]) -> Callable[[Document], Document]:
+    def made(
+        name: str, many: str, when: RuleData, then: list[RuleData] | None = None, **more: Any
+    ) -> Callable[[Document], Document]:
+        """Adds a rule of the thing, or of any, all or each of several; then: None = it counts."""
+
+        def edit(document: Document) -> Document:
+            if then is None and not document.level.counters:
+                document = add_counter(document)
+            subject: RuleData = {many: tuple(names)}
+            if is_one and "touches" in when:
+                subject = {"touches": (things[0], *when["touches"])}
+            elif is_one:
+                subject = subject_of(level, things[0])
+            does = then or [{"count": document.level.counters[0].id}, {"sound": "bell"}]
+            return add_rule(document, {"id": name, "when": {**when, **subject}, "then": does, **more})
+
+        return edit
+
+    def of(data: RuleData) -> Callable[[Document], Document]:
         return lambda document: add_rule(document, data)
 
-    def of_thing(needs: str | None, data: Callable[[dict[str, str]], dict[str, Any]]) -> Any:
-        return None if thing is None or needs is None else of(data(subject_of(level, thing)))
-
-    what, where = thing or "a thing", zone or "a zone"
-    inside = {"metric": "inside", "zone": zone}
-    goal = of_thing(zone, lambda subject: {
-        "id": "goal", "when": {**inside, **subject}, "for_seconds": STAY, "then": [{"win": WON}],
-    })  # fmt: skip
-    crossed = of_thing(zone, lambda subject: {
-        "id": "lost", "when": {"crosses": zone, **subject}, "then": [{"fail": LOST}],
-    })  # fmt: skip
-
-    def counted(document: Document) -> Document:
-        if not document.level.counters:
-            document = add_counter(document)
-        counter = document.level.counters[0].id
-        then = [{"count": counter}, {"sound": "bell"}]
-        return add_rule(document, {"id": "touch", "when": {"touches": [thing, other]}, "then": then})
-
-    cut = {"id": "key", "when": {"key": FIRST_KEY}, "then": [{"cut": body}]}
-    return [
-        Template(f"Goal: {what} is inside {where}", goal),
-        Template(f"Lost when {what} crosses {where}", crossed),
-        Template(f"When {what} touches {other or 'another thing'}: count",
-                 None if thing is None or other is None or thing == other else counted),
-        Template(f"When key {FIRST_KEY.upper()}: cut {body or 'a body'}", None if body is None else of(cut)),
-        Template("After 30 s: lost", of({"id": "time", "when": {"time": 30.0}, "then": [{"fail": "Time is up."}]})),
+    what, where, has_zone = listed(names) if names else "a thing", zone or "a zone", bool(things and zone)
+    all_of, any_of, each_of = ("", "", "") if is_one else ("all of ", "any of ", "each of ")
+    inside, crosses = {"metric": "inside", "zone": zone}, {"crosses": zone}
+    found = [
+        (f"Goal: {all_of}{what} {'is' if is_one else 'are'} inside {where}", has_zone,
+         made("goal", "all_of", inside, [{"win": WON}], for_seconds=STAY)),
+        (f"Lost when {any_of}{what} crosses {where}", has_zone, made("lost", "any_of", crosses, [{"fail": LOST}])),
+        (f"Count {each_of}{what} once in {where}", has_zone, made("count", "each_of", crosses, once=True)),
+        (f"Count {each_of}{what} once at a touch of {other or 'another thing'}", bool(things and other),
+         made("count", "each_of", {"touches": (other,)}, once=True)),
+        (f"When key {FIRST_KEY.upper()}: cut {body or 'a body'}", body is not None,
+         of({"id": "key", "when": {"key": FIRST_KEY}, "then": [{"cut": body}]})),
+        ("After 30 s: lost", True, of({"id": "time", "when": {"time": 30.0}, "then": [{"fail": "Time is up."}]})),
     ]  # fmt: skip
+    return [Template(text, edit if is_there else None) for text, is_there, edit in found]
 
 
 def why_not(document: Document) -> str:

@@ -13,6 +13,7 @@ from sandbox.editor.rule_text import named_zones
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.kinds.bodies import expansion
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.rule import QuestionDef, RuleDef
 
 # Directions in which it is looked how long a body is.
@@ -21,8 +22,8 @@ DIRECTIONS = 36
 
 def hopeless_rules(level: Level, scene: Scene) -> Rule:
     """Rules whose question can never hold, and wins that come after a loss."""
-    counted = _reach(level)
-    for rule in level.rules:
+    counted, rules = _reach(level), run_rules(level)
+    for rule in rules:
         yield None
         fault = _fault(level, scene, rule.when, counted)
         if fault is None:
@@ -31,10 +32,8 @@ def hopeless_rules(level: Level, scene: Scene) -> Rule:
         box = scene.bounds(zones) if zones else None
         place = None if box is None else ((box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0)
         yield Finding("warning", f'Rule "{rule.id}" never fires: {fault}', zones, place)
-    wins = [(_time_of(rule, 0.0), rule.id) for rule in level.rules for action in rule.then if action.win is not None]
-    losses = [
-        (_time_of(rule, math.inf), rule.id) for rule in level.rules for action in rule.then if action.fail is not None
-    ]
+    wins = [(_time_of(rule, 0.0), rule.id) for rule in rules for action in rule.then if action.win is not None]
+    losses = [(_time_of(rule, math.inf), rule.id) for rule in rules for action in rule.then if action.fail is not None]
     if wins and losses and min(losses)[0] < min(wins)[0]:
         (lost, loses), (won, wins_by) = min(losses), min(wins)
         text = f'No run is won: "{loses}" loses it by {lost:g} s, and "{wins_by}" wins at {won:g} s at the earliest'
@@ -56,7 +55,7 @@ def _time_of(rule: RuleDef, otherwise: float) -> float:
 def _reach(level: Level) -> dict[str, tuple[float, float]]:
     """The least and the most that rules can count each counter to; what fires again and again has no end."""
     reach = {counter.id: (counter.start, counter.start) for counter in level.counters}
-    for rule in level.rules:
+    for rule in run_rules(level):
         times = 1.0 if rule.once or rule.when.time is not None else math.inf
         for action in rule.then:
             if action.count in reach and action.by:

@@ -1,6 +1,6 @@
 """The form of a rule, that reads as a sentence: when what holds, for how long, then what is done."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -13,6 +13,7 @@ from sandbox.editor.edits.rule_edits import (
     add_counter,
     change_counter,
     change_rule,
+    chosen_movers,
     delete_counter,
     subject_of,
 )
@@ -22,7 +23,8 @@ from sandbox.editor.panel.property import Property, Section, named
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level
-from sandbox.level.rules.rule import GROUPS, UNASKED, WALLS, CounterDef, QuestionDef, RuleDef
+from sandbox.level.plan.run_rules import each_in, members_of, several
+from sandbox.level.rules.rule import GROUPS, MANY, UNASKED, WALLS, CounterDef, QuestionDef, RuleDef
 
 # What a question asks, in words.
 _ASKS = {
@@ -33,6 +35,18 @@ _ASKS = {
 ANYTHING = "anything"
 # After how long [s] a question asks at first.
 FIRST_TIME = 10.0
+# Questions that are of one thing, or of several.
+_OF_THINGS = ("inside", "crosses", "touches", "metric")
+ONE = "one"
+_HOW_MANY = FieldInfo(
+    "choice", "When", choices=(ONE, *MANY), labels=(ONE, "any", "all", "each"), tooltip="How many things it is of.",
+    tips=("One thing", "Any of several: one is enough", "All of several",
+          "Each of several, as by a rule of its own: it acts for each"),
+)  # fmt: skip
+SEVERAL = FieldInfo(
+    "words", "Of these", pick="mover",
+    tooltip="Bodies, loose particles and groups, set apart by commas. Pick adds one, or takes it out.",
+)  # fmt: skip
 # A question of the level: the index of its rule, and the way to it through questions that ask others.
 _At = tuple[int, ...]
 
@@ -71,7 +85,9 @@ def _question_properties(level: Level, rule: RuleDef, index: int) -> tuple[Prope
 
 def _own(rule: RuleDef, index: int) -> tuple[Property, ...]:
     about = fields_of(RuleDef)
-    once = _of_rule(index, "once", replace(about["once"], title="Only once"), rule.once)
+    once = _of_rule(
+        index, "once", replace(about["once"], title="Once for each" if each_in(rule.when) else "Only once"), rule.once
+    )
     return once, _of_rule(index, "id", about["id"], rule.id)
 
 
@@ -90,26 +106,29 @@ def _sentence(level: Level, question: QuestionDef, at: _At) -> list[Property]:
     ) -> None:
         made.append(Property(into + field, about, value, write or partial(_set_word, at, field)))
 
-    def of_thing(title: str = "When", optional: bool = False) -> None:
-        tip = "The body or loose particle that it asks for."
-        about = replace(choice_of(title, things, tip), pick="mover", optional=optional, empty=ANYTHING)
+    field, names = several(question)
+    if asks in _OF_THINGS and (asks in ("crosses", "touches") or _is_of_things(question)):
+        made.append(Property(f"{into}many", _HOW_MANY, field or ONE, partial(_set_many, at)))
+    if field:
+        word("several", SEVERAL, names, partial(_set_several, at, field))
+    elif asks in ("inside", "crosses"):
+        about = replace(choice_of("Of", things, "The body or loose particle that it asks for."), pick="mover")
         word("subject", about, subject, partial(_set_subject, at))
-
     if asks in ("inside", "crosses"):
-        of_thing()
         made.append(asked)
         about = replace(choice_of("Zone", zones, "The zone."), pick="zone")
         word("zone" if asks == "inside" else "crosses", about, question.zone or question.crosses)
     elif asks == "touches":
         pieces = (*things, *(piece.id for piece in level.terrain), *((WALLS,) if level.walls is not None else ()))
-        first, second = (*(question.touches or ()), None)[:2]
-        about = replace(choice_of("When", pieces, "What touches."), pick="thing")
-        word("touches.0", about, first, partial(_set_touching, at, 0))
+        touching, met = question.touches or (), 0 if field else 1
+        if not field:
+            about = replace(choice_of("Of", pieces, "What touches."), pick="thing")
+            word("touches.0", about, touching[0], partial(_set_touching, at, 0))
         made.append(asked)
         about = replace(
             choice_of("What it meets", pieces, "What is touched."), pick="thing", optional=True, empty=ANYTHING
         )
-        word("touches.1", about, second, partial(_set_touching, at, 1))
+        word("touches.1", about, (*touching, None, None)[met], partial(_set_touching, at, met))
     elif asks == "breaks":
         about = replace(choice_of("When", tuple(body.id for body in level.bodies), "The body."), pick="body")
         word("breaks", about, question.breaks)
@@ -141,6 +160,11 @@ def _indented(each: Property) -> Property:
     return replace(each, label=each.step, about=replace(each.about, title=f"\N{MIDDLE DOT} {each.about.title}"))
 
 
+def _is_of_things(question: QuestionDef) -> bool:
+    """Whether a metric is of a body or a particle."""
+    return question.metric is not None and any(map(METRICS[question.metric].takes, ("particle", "body")))
+
+
 def _metric(level: Level, question: QuestionDef, at: _At) -> list[Property]:
     assert question.metric is not None
     into = "".join(f"{place}." for place in at[1:])
@@ -148,7 +172,7 @@ def _metric(level: Level, question: QuestionDef, at: _At) -> list[Property]:
     names = tuple(name for name in METRICS if name not in UNASKED and name != "inside")
     about = choice_of("Measure", names, "What is measured.", tuple(METRICS[name].label for name in names))
     made = [Property(f"{into}metric", about, question.metric, partial(_set_metric, at))]
-    if measured.takes("particle") or measured.takes("body"):
+    if _is_of_things(question) and not several(question)[0]:
         needed = bool(measured.needs_one or measured.needs)
         about = replace(choice_of("Of", _things(level), "What it is of."), pick="mover", optional=not needed,
                         empty="everything")  # fmt: skip
@@ -237,6 +261,52 @@ def _subject_for(level: Level, when: Mapping[str, Any], name: str) -> dict[str, 
     return named
 
 
+def _set_many(at: _At, document: Document, value: Any) -> Document:
+    """Let a question be of one thing, or of any, all or each of those that it names or that are selected."""
+
+    def change(level: Level, when: RuleData) -> RuleData:
+        names = _names_of(when)
+        return _of_things(level, when, value, names if len(names) > 1 else chosen_movers(document) or names)
+
+    made = _asking(at, document, change)
+    if value != "each_of":
+        return made
+    # What counts them counts each once, unless told otherwise.
+    return change_rule(made, at[0], lambda _, data: {**data, "once": True})
+
+
+def _names_of(when: RuleData) -> tuple[str, ...]:
+    """What a question is of."""
+    one = [*(when.get("touches") or ())][:1] or [when.get("body") or when.get("particle")]
+    return next((when[field] for field in MANY if field in when), tuple(name for name in one if name))
+
+
+def _of_things(level: Level, when: RuleData, how: str, names: Sequence[str]) -> RuleData:
+    """A question of the first of some things, or of any, all or each of them."""
+    touches = tuple(when.get("touches", ()))
+    bare = {name: value for name, value in when.items() if name not in ("particle", "body", "touches", *MANY)}
+    if "touches" in when:
+        bare["touches"] = touches if when.keys() & set(MANY) else touches[1:]
+    if how != ONE:
+        return {**bare, how: tuple(names)}
+    first = members_of(level).things(names)[:1]
+    if "touches" in when:
+        return {**bare, "touches": (*(first or names[:1]), *bare["touches"])}
+    return {**bare, **(_subject_for(level, when, first[0]) if first else {})}
+
+
+def _set_several(at: _At, field: str, document: Document, value: Any) -> Document:
+    """Set the things that a question names; one that is picked joins them, or leaves them."""
+
+    def change(_: Level, when: RuleData) -> RuleData:
+        names = list(when[field])
+        picked = [name for name in names if name != value]
+        new = value if not isinstance(value, str) else picked if len(picked) < len(names) else [*names, value]
+        return {**when, field: tuple(new)}
+
+    return _asking(at, document, change)
+
+
 def _set_touching(at: _At, place: int, document: Document, value: Any) -> Document:
     def change(_: Level, when: RuleData) -> RuleData:
         names: list[Any] = list(when["touches"])[:2]
@@ -263,6 +333,11 @@ def _question(level: Level, asks: str, old: RuleData, metric: str) -> RuleData:
         first: RuleData = _members(old)[1][0]
         is_same = _asked(QuestionDef.model_validate(first)) == asks
         return first if is_same else _question(level, asks, first, metric)
+    many = next((field for field in MANY if field in old), "")
+    if many:
+        new = _question(level, asks, _of_things(level, old, ONE, old[many]), metric)
+        is_of_things = asks != "metric" or _is_of_things(QuestionDef.model_validate(new))
+        return _of_things(level, new, many, old[many]) if asks in _OF_THINGS and is_of_things else new
     things, zones = _things(level), [zone.id for zone in level.zones]
     named = old.get("body") or old.get("particle") or (old.get("touches") or (None,))[0] or old.get("breaks")
     thing = named if named in things else old.get("particle") or (things[0] if things else None)

@@ -8,17 +8,19 @@ from sandbox.level.checks import SUBJECTS
 from sandbox.level.document.model import Level
 from sandbox.level.faults.reference_faults import metric_faults, subject_faults
 from sandbox.level.format.level_error import Fault, shown, suggestion
-from sandbox.level.format.limits import QUESTION_LIMIT
+from sandbox.level.format.limits import QUESTION_LIMIT, RULE_LIMIT
+from sandbox.level.format.quantities import replaced
 from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.plan import Layout, Plan
-from sandbox.level.rules.rule import ASKS, BELONGS, DOES, UNASKED, WALLS, ActionDef, Asks, QuestionDef
+from sandbox.level.plan.run_rules import Members, asked_of, each_in, members_of, several
+from sandbox.level.rules.rule import ASKS, BELONGS, DOES, MANY, UNASKED, WALLS, ActionDef, Asks, QuestionDef
 
 # The fields of a question beside those that say what it asks, by these.
 _BOUNDS = ("at_most", "at_least")
 _SUBJECTS = tuple("zone" if name == "box" else name for name in SUBJECTS)
 _TAKES: dict[Asks, tuple[str, ...]] = {
-    "metric": (*_SUBJECTS, *_BOUNDS), "crosses": ("particle", "body"), "counter": _BOUNDS,
-    "touches": (), "breaks": (), "key": (), "time": (), "all": (), "any": (), "none": (),
+    "metric": (*_SUBJECTS, *MANY, *_BOUNDS), "crosses": ("particle", "body", *MANY), "counter": _BOUNDS,
+    "touches": MANY, "breaks": (), "key": (), "time": (), "all": (), "any": (), "none": (),
 }  # fmt: skip
 
 
@@ -32,6 +34,7 @@ class _RuleNames:
     counters: tuple[str, ...]
     parts: tuple[str, ...]
     loose_springs: int
+    members: Members
 
     def find(self, kind: str, where: str, name: str) -> Iterator[Fault]:
         """The fault of a name that nothing of the kind has."""
@@ -52,17 +55,24 @@ def rule_faults(level: Level, layout: Layout) -> Iterator[Fault]:
         level.counter_names,
         tuple(part.name for part in actuators(level)),
         len(level.springs),
+        members_of(level),
     )
     yield from _repeated("counters", "counter", [counter.id for counter in level.counters])
     yield from _repeated("rules", "rule", [rule.id for rule in level.rules])
+    count = 0
     for index, rule in enumerate(level.rules):
-        path = f"rules.{index}"
-        if _size(rule.when) > QUESTION_LIMIT:
+        path, each = f"rules.{index}", each_in(rule.when)
+        count += len(names.members.things(each[0])) if each else 1
+        if _size(rule.when, names.members) > QUESTION_LIMIT:
             yield f"{path}.when", f"asks more than {QUESTION_LIMIT:,} questions; use fewer"
+        elif len(each) > 1:
+            yield f"{path}.when", "says each_of twice; a rule is of each of one list"
         else:
             yield from _question_faults(f"{path}.when", rule.when, names)
         for number, action in enumerate(rule.then):
             yield from _action_faults(f"{path}.then.{number}", action, names)
+    if count > RULE_LIMIT:
+        yield "rules", f"come to {count:,} with one for each of each_of; at most {RULE_LIMIT:,}"
 
 
 def cut_spring_faults(level: Level, plan: Plan) -> Iterator[Fault]:
@@ -83,8 +93,10 @@ def _repeated(key: str, noun: str, ids: Iterable[str]) -> Iterator[Fault]:
         taken.add(name)
 
 
-def _size(question: QuestionDef) -> int:
-    return 1 + sum(map(_size, question.members))
+def _size(question: QuestionDef, members: Members) -> int:
+    field, named = several(question)
+    own = len(members.things(named)) if field in ("any_of", "all_of") else 0
+    return 1 + own + sum(_size(member, members) for member in question.members)
 
 
 def _question_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
@@ -93,10 +105,38 @@ def _question_faults(path: str, question: QuestionDef, names: _RuleNames) -> Ite
         yield path, f"asks one of {', '.join(ASKS)}; {said}"
         return
     asks = question.asked[0]
-    for field in (*_SUBJECTS, *_BOUNDS):
+    for field in (*_SUBJECTS, *MANY, *_BOUNDS):
         if getattr(question, field) is not None and field not in _TAKES[asks]:
             yield f"{path}.{field}", f"belongs to another question than {asks}; take it out"
-    yield from _ASKED[asks](path, question, names)
+    field, named = several(question)
+    if field and field in _TAKES[asks]:
+        yield from _faults_of_several(path, field, named, question, names)
+    else:
+        yield from _ASKED[asks](path, question, names)
+
+
+def _faults_of_several(
+    path: str, field: str, named: tuple[str, ...], question: QuestionDef, names: _RuleNames
+) -> Iterator[Fault]:
+    """Faults of a question about several things, and of what it asks of each."""
+    others = [each for each in ("particle", "body", *MANY) if each != field and getattr(question, each) is not None]
+    for other in others:
+        yield f"{path}.{other}", f"stands beside {field}; take one of them out"
+    if len(question.touches or ()) > 1:
+        yield f"{path}.touches", f"names at most one thing that those of {field} touch"
+    unknown = [(k, name) for k, name in enumerate(named) if name not in names.members]
+    for k, name in unknown:
+        fault = f"there is no body, loose particle or group {shown(name)}" + suggestion(name, names.members)
+        yield f"{path}.{field}.{k}", fault
+    if others or unknown or len(question.touches or ()) > 1:
+        return
+    faults: dict[Fault, None] = {}
+    for thing in names.members.things(named):
+        asked = asked_of(replaced(question, **{field: None, "each_of": (thing,)}), names.members, thing)
+        for where, fault in _ASKED[asked.asked[0]](path, asked, names):
+            own = where.removeprefix(path) not in (".particle", ".body")
+            faults[where if own else f"{path}.{field}", fault] = None
+    yield from faults
 
 
 def _member_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
@@ -120,6 +160,8 @@ def _metric_faults(path: str, question: QuestionDef, names: _RuleNames) -> Itera
 
 def _touches_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     touching = question.touches or ()
+    if not touching:
+        yield f"{path}.touches", "names nothing; name what touches, or several things in any_of"
     for index, name in enumerate(touching):
         if name not in names.things:
             fault = f"there is no body, loose particle or piece of terrain {shown(name)}"

@@ -148,7 +148,8 @@ Extras = Annotated[
 Group = Annotated[
     Name | None,
     Field(
-        description="Group of the editor: its members are selected and moved together.", json_schema_extra=empty("none")
+        description="Group: the editor selects and moves its members together, and rules may name it.",
+        json_schema_extra=empty("none"),
     ),
 ]
 Corners = Annotated[tuple[Point, ...], Field(min_length=2, max_length=CORNER_LIMIT)]

@@ -12,6 +12,7 @@ from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.plan.plan import Plan
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.player_limits import PlayerLimits
 from sandbox.level.rules.rule import WALLS, QuestionDef, RuleDef
 from sandbox.physics import rules
@@ -68,13 +69,12 @@ def _add_hands(world: World, hands: PlayerLimits) -> None:
 
 def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     maker = _Maker(world, level, plan, slots)
-    roots = [maker.root(rule) for rule in level.rules]
+    rules = run_rules(level)
+    roots = [maker.root(rule) for rule in rules]
     rate = level.settings.tick_rate
-    world.rules = maker.rules(
-        roots, [round(rule.for_seconds * rate) for rule in level.rules], [rule.once for rule in level.rules]
-    )
+    world.rules = maker.rules(roots, [round(rule.for_seconds * rate) for rule in rules], [rule.once for rule in rules])
     counters = level.counters
-    _append(world, Family.RULE, [rule.id for rule in level.rules])
+    _append(world, Family.RULE, [rule.id for rule in rules])
     _append(world, Family.COUNTER, [each.id for each in counters], counter=[each.start + 0.0 for each in counters])
     rows = np.array(maker.probes, np.int64).reshape(-1, 2)
     world.ways = followed(world.rules.zones, rows, world.particle_count)

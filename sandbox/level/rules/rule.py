@@ -28,11 +28,14 @@ Asks = Literal["metric", "touches", "crosses", "breaks", "counter", "key", "time
 ASKS: tuple[Asks, ...] = get_args(Asks)
 # Those that ask other questions.
 GROUPS = ("all", "any", "none")
+# Fields that name several things, where a question is of one.
+MANY = ("any_of", "all_of", "each_of")
 # Metrics of checks that no rule asks for: they look back over seconds, or are found by the solver's spring constants.
 UNASKED = ("max_strain", "rms_strain", "potential_energy", "energy")
 # What touches may name beside things with an id.
 WALLS = "walls"
 
+_Several = Annotated[tuple[Name, ...], Field(min_length=1, max_length=QUESTION_LIMIT)]
 _Members = Annotated[tuple["QuestionDef", ...], Field(min_length=1, max_length=QUESTION_LIMIT)]
 
 
@@ -59,9 +62,24 @@ class QuestionDef(Description):
         description="Zone of the metric `inside`. The whole body must be inside at the end of a tick.",
         json_schema_extra=empty("none"),
     )
-    touches: Annotated[tuple[Name, ...], Field(min_length=1, max_length=2)] | None = Field(
+    any_of: _Several | None = Field(
         default=None,
-        description="A body, loose particle or piece of terrain, or `walls`, and what it pushes; one alone: anything.",
+        description="Bodies, loose particles and groups, in place of `body`, `particle` or what touches: one of them "
+        "is enough.",
+        json_schema_extra=empty("none"),
+    )
+    all_of: _Several | None = Field(
+        default=None, description="As `any_of`, but it must hold of all of them.", json_schema_extra=empty("none")
+    )
+    each_of: _Several | None = Field(
+        default=None,
+        description="As `any_of`, but the rule is one of its own for each of them, and acts for each.",
+        json_schema_extra=empty("none"),
+    )
+    touches: Annotated[tuple[Name, ...], Field(max_length=2)] | None = Field(
+        default=None,
+        description="A body, loose particle or piece of terrain, or `walls`, and what it pushes; one alone: anything. "
+        "Of several things it names what they push, or nothing: anything.",
         json_schema_extra=empty("none"),
     )
     crosses: Name | None = Field(

@@ -9,6 +9,7 @@ import numpy as np
 
 from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.player_limits import thing_of
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.analysis.query import shown_particles
@@ -238,7 +239,7 @@ class _GoalWatch(FailureWatch):
             return None
         self.is_over = True
         level = self._session.level
-        rule, rate = level.rules[found.rule].id, level.settings.tick_rate
+        rule, rate = run_rules(level)[found.rule].id, level.settings.tick_rate
         if found.is_won or self._failure.rule not in ("", rule):
             return None
         return FailureSeen(IsLost(rule), f"{outcome_text(found, rate)}: {found.text}")

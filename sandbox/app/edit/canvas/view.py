@@ -16,6 +16,7 @@ from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor,
 from sandbox.app.edit.canvas.pointer import SelectTool
 from sandbox.app.edit.canvas.trails import draw_attempts, draw_trails
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.edits.grouping import groups_of
 from sandbox.editor.items import PARTS, Item, Selection, keys
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.rule_text import acted_on, named_things, named_zones
@@ -316,8 +317,10 @@ def _places(scene: Scene, names: list[str]) -> list[Point]:
 def _place(scene: Scene, name: str) -> Point | None:
     """The middle of a thing [m], or the place of a particle; None = it has none, as walls."""
     known = frozenset(scene.items)
-    item = next((Item(kind, name) for kind in PARTS if Item(kind, name) in known), None)
-    box = None if item is None else scene.bounds(frozenset([item]))
+    items = [Item(kind, name) for kind in PARTS if Item(kind, name) in known][:1]
+    if not items and "." not in name:
+        items = [item for item, group in groups_of(scene.level).items() if group == name]
+    box = scene.bounds(frozenset(items)) if items else None
     if box is not None:
         return (box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0
     try:
