@@ -83,7 +83,7 @@ def test_stars_are_earned_by_time_by_a_counter_and_by_parts_left(maker):
         made.choose("then.0.stars", name)
         stars = made.file().rules[0].then[0].stars
         assert (stars.counter, stars.second, stars.third) == (name, 1.0, 2.0), made.driver.notices
-    assert any("Three stars from" in str(each.about) for each in made.page.form.properties.values())
+    assert any("3 stars from" in str(each.about) for each in made.page.form.properties.values())
     made.choose("then.0.stars", "three for each win")
     assert made.file().rules[0].then[0].stars is None
     assert made.driver.editor.history.labels[-1] == "Rule goal: stars"
@@ -185,3 +185,35 @@ def test_a_group_that_is_selected_whole_is_named_by_its_name(maker):
     made.driver.click_at(1, 1)
     made.press("many any_of")
     assert made.file().rules[0].when.any_of == ("trio",)
+
+
+def test_a_click_on_a_line_opens_its_rule_and_the_next_folds_it_and_arrows_go_on(maker):
+    rules = [{**GOAL, "id": f"goal {k}", "for_seconds": k / 10.0} for k in range(12)]
+    made = maker(rules=rules)
+
+    def click_line(lines, row):
+        made.page._area.scroll_to(lines.place.top + lines._tops[row] - 60)
+        made.driver.frames(2)
+        made.driver.click((lines.rect.left + 40, lines.rect.top + lines._tops[row] + 10))
+        made.driver.frames(2)
+
+    assert len(made.page.rows) == 12 and "0.subject" not in made.page.form.properties
+    click_line(made.page._rest, 4)
+    assert made.page.chosen == 5 and made.page.form.properties["id"].value == "goal 5"
+    made.driver.key(pygame.K_DOWN)
+    assert made.page.form.properties["id"].value == "goal 6" and made.page.list.chosen == 6
+    made.press("fold Then")
+    made.driver.frames(2)
+    assert made.page._rest.place.top == made.page._ui.px(made.page.form.end)
+    assert made.page.tail.fields["goal"][0].rect.top > made.page._rest.rect.bottom
+    click_line(made.page.list, 6)
+    assert made.page.chosen == -1 and not made.page.form.properties and len(made.page.list.rows) == 12
+    click_line(made.page.list, 2)
+    assert made.page.form.properties["id"].value == "goal 2"
+    made.driver.click_widget(made.page.buttons["Duplicate"])
+    made.driver.frames(2)
+    assert made.page.form.properties["id"].value == "goal 12"
+    assert [rule.for_seconds for rule in made.file().rules[2:5]] == [0.2, 0.2, 0.3]
+    made.driver.click_widget(made.page.buttons["Delete"])
+    made.driver.frames(2)
+    assert len(made.rules) == 12 and made.page.chosen == 3

@@ -32,6 +32,11 @@ class Form(PropertyWidgets):
         super().__init__(owner, Widget(owner.ui, pygame.Rect(0, 0, 0, 0), area.content))
         self.area, self._above, self._below, self._empty = area, above, below, empty
 
+    def make_room(self, above: float) -> None:
+        """Leave other room free above; what is shown next keeps it."""
+        if above != self._above:
+            self._above, self._structure = above, None
+
     @property
     def end(self) -> float:
         """The lower end of the form [layout units]."""

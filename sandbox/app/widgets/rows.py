@@ -27,6 +27,7 @@ class Row:
     """A row: text, lines in grey below it, a spot of colour before it, the colour of the text.
 
     aside: words in grey at the right, in the line of the text, which is cut to leave them room; indent: steps.
+    lines: how many its texts may take; 0: as many as those of its list.
     """
 
     text: str
@@ -35,6 +36,7 @@ class Row:
     colour: Colour = TEXT
     aside: str = ""
     indent: int = 0
+    lines: int = 0
 
 
 class RowList(Widget):
@@ -98,11 +100,17 @@ class RowList(Widget):
             left = inset + (ui.px(SWATCH + 8) if row.swatch is not None else 0) + row.indent * ui.px(INDENT)
             widest = self.rect.width - left - inset
             aside = ui.font(DETAIL_SIZE).size(row.aside)[0] + ui.px(8) if row.aside else 0
-            lines = wrapped(row.text, font, max(widest - aside, widest // 3), self._most_lines)
-            details = wrapped(row.detail, ui.font(DETAIL_SIZE), widest, self._most_lines) if row.detail else []
+            most = row.lines or self._most_lines
+            lines = wrapped(row.text, font, max(widest - aside, widest // 3), most)
+            details = wrapped(row.detail, ui.font(DETAIL_SIZE), widest, most) if row.detail else []
             self._lines.append((lines, details))
             count = len(lines) + len(details)
             self._tops.append(self._tops[-1] + count * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING))
+
+    @property
+    def height(self) -> int:
+        """What all rows take [pixels]."""
+        return self._tops[-1]
 
     @property
     def pointed(self) -> int | None:

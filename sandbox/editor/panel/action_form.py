@@ -84,7 +84,7 @@ def _star_properties(level: Level, stars: StarsDef | None, write: Callable[..., 
     if stars is None:
         return made
     is_least, unit = stars.third > stars.second, "" if stars.counter else "s"
-    for field, count in (("second", "Two"), ("third", "Three")):
+    for field, count in (("second", "2"), ("third", "3")):
         title = f"{count} stars {'from' if is_least else 'within' if unit else 'up to'}"
         bound = replace(about[field], title=title, unit=unit)
         made.append(

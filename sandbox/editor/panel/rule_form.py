@@ -1,6 +1,6 @@
 """The form of a rule, that reads as a sentence: when what holds, for how long, then what is done."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,7 +20,6 @@ from sandbox.editor.edits.rule_edits import (
 from sandbox.editor.panel.action_form import action_properties
 from sandbox.editor.panel.field_info import FieldInfo, choice_of, fields_of
 from sandbox.editor.panel.property import Property, Section, named
-from sandbox.editor.rule_text import rule_text
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level
 from sandbox.level.plan.run_rules import each_in, members_of, several
@@ -51,18 +50,21 @@ SEVERAL = FieldInfo(
 _At = tuple[int, ...]
 
 
-def rule_properties(document: Document, index: int) -> tuple[Section, ...]:
-    """Properties of a rule of the level, by its index, of the counters, and of the level's goal."""
-    level = document.level
-    sections = []
-    if 0 <= index < len(level.rules):
-        rule = level.rules[index]
-        when, then = _question_properties(level, rule, index), action_properties(level, rule, index)
-        parts = {rule_text(rule): when, "Then": then, "This rule": _own(rule, index)}
-        sections = [Section(title, named(part, f"Rule {rule.id}")) for title, part in parts.items()]
+def rule_properties(level: Level, index: int) -> tuple[Section, ...]:
+    """Properties of a rule of the level, by its index; () where there is none."""
+    if not 0 <= index < len(level.rules):
+        return ()
+    rule = level.rules[index]
+    when, then = _question_properties(level, rule, index), action_properties(level, rule, index)
+    parts = {"": when, "Then": then, "This rule": _own(rule, index)}
+    return tuple(Section(title, named(part, f"Rule {rule.id}")) for title, part in parts.items())
+
+
+def score_properties(level: Level) -> tuple[Section, ...]:
+    """Properties of the counters of a level, and of the line that says its goal."""
     about = replace(fields_of(Level)["goal"], title="Goal line")
     goal = Property("goal", about, level.goal, lambda document, value: set_level_field(document, "goal", value))
-    return (*sections, Section("Counters", tuple(_counter_properties(level))), Section("For players", (goal,)))
+    return Section("Counters", tuple(_counter_properties(level))), Section("For players", (goal,))
 
 
 # The question.
@@ -146,14 +148,18 @@ def _sentence(level: Level, question: QuestionDef, at: _At) -> list[Property]:
     elif asks == "metric":
         made += [asked, *_metric(level, question, at)]
     elif question.members:
-        made.append(asked)
-        for place, member in enumerate(question.members):
-            remove = partial(_stop_asking, at, place) if len(question.members) > 1 else None
-            opening, *rest = _sentence(level, member, (*at, place))
-            made += [_indented(each) for each in (replace(opening, remove=remove), *rest)]
+        made += [asked, *_member_sentences(level, question, at)]
     else:
         raise ValueError(f"a form has no question {asks!r}")
     return made
+
+
+def _member_sentences(level: Level, question: QuestionDef, at: _At) -> Iterator[Property]:
+    """The sentences of what a question asks, each of which can be taken away where there are several."""
+    for place, member in enumerate(question.members):
+        remove = partial(_stop_asking, at, place) if len(question.members) > 1 else None
+        opening, *rest = _sentence(level, member, (*at, place))
+        yield from (_indented(each) for each in (replace(opening, remove=remove), *rest))
 
 
 def _indented(each: Property) -> Property:

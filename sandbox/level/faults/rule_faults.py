@@ -12,7 +12,7 @@ from sandbox.level.format.limits import QUESTION_LIMIT, RULE_LIMIT
 from sandbox.level.format.quantities import replaced
 from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.plan import Layout, Plan
-from sandbox.level.plan.run_rules import Members, asked_of, each_in, members_of, several
+from sandbox.level.plan.run_rules import ThingsByName, asked_of, each_in, members_of, several
 from sandbox.level.rules.rule import ASKS, BELONGS, DOES, MANY, UNASKED, WALLS, ActionDef, Asks, QuestionDef
 
 # The fields of a question beside those that say what it asks, by these.
@@ -34,7 +34,7 @@ class _RuleNames:
     counters: tuple[str, ...]
     parts: tuple[str, ...]
     loose_springs: int
-    members: Members
+    members: ThingsByName
 
     def find(self, kind: str, where: str, name: str) -> Iterator[Fault]:
         """The fault of a name that nothing of the kind has."""
@@ -93,7 +93,7 @@ def _repeated(key: str, noun: str, ids: Iterable[str]) -> Iterator[Fault]:
         taken.add(name)
 
 
-def _size(question: QuestionDef, members: Members) -> int:
+def _size(question: QuestionDef, members: ThingsByName) -> int:
     field, named = several(question)
     own = len(members.things(named)) if field in ("any_of", "all_of") else 0
     return 1 + own + sum(_size(member, members) for member in question.members)

@@ -21,7 +21,7 @@ def run_rules(level: Level) -> tuple[RuleDef, ...]:
     return kept
 
 
-class Members(dict[str, tuple[str, ...]]):
+class ThingsByName(dict[str, tuple[str, ...]]):
     """What a name of several things may be, and the things that it stands for; a thing's own name comes first.
 
     bodies: the names of those that are bodies.
@@ -34,14 +34,14 @@ class Members(dict[str, tuple[str, ...]]):
         return tuple(dict.fromkeys(chain.from_iterable(self.get(name, ()) for name in names)))
 
 
-def members_of(level: Level) -> Members:
+def members_of(level: Level) -> ThingsByName:
     """Bodies, loose particles, and groups of them, by name."""
     movers: list[AnyBody | ParticleDef] = [*level.bodies, *level.particles]
     grouped: dict[str, list[str]] = {}
     for each in movers:
         if each.group is not None:
             grouped.setdefault(each.group, []).append(each.id)
-    found = Members({name: tuple(things) for name, things in grouped.items()})
+    found = ThingsByName({name: tuple(things) for name, things in grouped.items()})
     found.update({each.id: (each.id,) for each in movers})
     found.bodies = frozenset(body.id for body in level.bodies)
     return found
@@ -63,7 +63,7 @@ def each_in(question: QuestionDef) -> list[tuple[str, ...]]:
     return [names for field, names in _named_by(question) if field == "each_of"]
 
 
-def _of_each(rule: RuleDef, members: Members) -> list[RuleDef]:
+def _of_each(rule: RuleDef, members: ThingsByName) -> list[RuleDef]:
     named = each_in(rule.when)
     if not named:
         when = asked_of(rule.when, members)
@@ -74,7 +74,7 @@ def _of_each(rule: RuleDef, members: Members) -> list[RuleDef]:
     ]
 
 
-def asked_of(question: QuestionDef, members: Members, each: str = "") -> QuestionDef:
+def asked_of(question: QuestionDef, members: ThingsByName, each: str = "") -> QuestionDef:
     """A question that names no more than one thing; of any and all of them it asks one by one. each: of `each_of`."""
     if question.members:
         (kind,) = question.asked
@@ -88,7 +88,7 @@ def asked_of(question: QuestionDef, members: Members, each: str = "") -> Questio
     return QuestionDef(any=asked) if field == "any_of" else QuestionDef(all=asked)
 
 
-def _of_thing(question: QuestionDef, members: Members, thing: str) -> QuestionDef:
+def _of_thing(question: QuestionDef, members: ThingsByName, thing: str) -> QuestionDef:
     if question.touches is not None:
         subject: dict[str, object] = {"touches": (thing, *question.touches)}
     else:
