@@ -5,10 +5,9 @@ import pytest
 
 from sandbox.editor.items import Item
 from sandbox.editor.rule_text import rule_text
-from sandbox.level.document.canonical import level_text
-from sandbox.level.reading.parse import parse_level
 from sandbox.session.outcome import outcome
 from tests.app.conftest import small_level
+from tests.support.form_maker import Maker
 
 BALLS = [{"id": f"ball {k}", "position": [k, 1.0], "radius": 0.2} for k in (1, 2, 3)]
 GOAL = {
@@ -21,55 +20,9 @@ PARTS = {
 }  # fmt: skip
 
 
-class Maker:
-    """A person at the page of rules, who has a mouse and types."""
-
-    def __init__(self, driver):
-        self.driver = driver
-        driver.editor.side.choose("rules")
-        driver.frames(2)
-
-    @property
-    def page(self):
-        return self.driver.editor.side.page
-
-    @property
-    def rules(self):
-        return self.driver.editor.document.level.rules
-
-    def press(self, name):
-        """Scroll to a widget of the form, and click it."""
-        widget = self.page.form._named[name]
-        self.page.form.area.show_widget(widget)
-        self.driver.frames(2)
-        self.driver.click_widget(widget)
-
-    def choose(self, name, text):
-        """Open a menu of the form, and click the row with that text."""
-        self.press(name)
-        menu = self.page.form.pickers[name]._menu
-        row = next(k for k, row in enumerate(menu.rows) if row.text == text)
-        menu._reveal(row)
-        self.driver.frames(2)
-        self.driver.click((menu.rect.centerx, menu.rect.top + menu._tops[row] - round(menu._offset) + 8))
-        self.driver.frames(2)
-
-    def type(self, name, text):
-        """Click a line of the form, type into it in place of what is there, and press Enter."""
-        self.press(name)
-        self.driver.key(pygame.K_a, pygame.KMOD_CTRL)
-        self.driver.type(text)
-        self.driver.key(pygame.K_RETURN)
-
-    def file(self):
-        """The level as its file reads it."""
-        text = level_text(self.driver.editor.document.level)
-        return parse_level(text.encode(), "file")
-
-
 @pytest.fixture
 def maker(edit):
-    return lambda **changes: Maker(edit(small_level(**{**PARTS, **changes})))
+    return lambda **changes: Maker(edit(small_level(**{**PARTS, **changes})), "rules")
 
 
 def test_stars_are_earned_by_time_by_a_counter_and_by_parts_left(maker):
@@ -205,7 +158,7 @@ def test_a_click_on_a_line_opens_its_rule_and_the_next_folds_it_and_arrows_go_on
     made.press("fold Then")
     made.driver.frames(2)
     assert made.page._rest.place.top == made.page._ui.px(made.page.form.end)
-    assert made.page.tail.fields["goal"][0].rect.top > made.page._rest.rect.bottom
+    assert made.page.tail.buttons["counter"].rect.top > made.page._rest.rect.bottom
     click_line(made.page.list, 6)
     assert made.page.chosen == -1 and not made.page.form.properties and len(made.page.list.rows) == 12
     click_line(made.page.list, 2)

@@ -88,8 +88,10 @@ def test_the_tab_of_the_page_stays_lit_when_it_is_clicked_again(driver):
     assert pygame.image.tobytes(button.image, "RGB") == lit
 
 
-def test_while_nothing_is_selected_the_panel_shows_the_level(driver):
-    assert entry(driver, "name").text == "Small"
+def test_while_nothing_is_selected_the_panel_says_so_and_a_search_finds_fields_of_the_level(driver):
+    assert not form(driver).properties and "page Level" in form(driver).empty
+    driver.fill(driver.editor.side.page.search, "rate")
+    driver.frames(2)
     driver.fill(entry(driver, "tick_rate"), "120")
     assert level(driver).settings.tick_rate == 120
     choose(driver, ROPE)
@@ -504,6 +506,9 @@ def test_settings_of_the_level_are_changed(driver):
     open_tab(driver, "level")
     driver.fill(entry(driver, "name"), "Two ropes")
     driver.fill(entry(driver, "tags"), "rope, small")
+    reveal(driver, form(driver)._named["fold Time and solver"])
+    driver.click_widget(form(driver)._named["fold Time and solver"])
+    driver.frames(2)
     driver.fill(entry(driver, "gravity", 1), "-1.62")
     driver.fill(entry(driver, "description"), r"First line\nsecond")
     assert level(driver).name == "Two ropes" and level(driver).tags == ("rope", "small")
@@ -686,6 +691,7 @@ def test_the_history_says_what_each_step_was_made_to(driver):
     choose(driver, ROPE, Item("body", "pair"))
     driver.fill(entry(driver, "segments"), "6")
     choose(driver)
+    open_tab(driver, "level")
     driver.fill(entry(driver, "name"), "Other")
     page = open_tab(driver, "history")
     assert [(row.text, row.aside) for row in page.list.rows[1:]] == [

@@ -95,7 +95,8 @@ def test_every_field_of_every_kind_of_item_can_be_reached(level):
 
 
 def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
-    first, second, third, fourth = level_properties(Document(level))
+    sections = {each.title: each.properties for each in level_properties(Document(level))}
+    settings = sections.pop("Time and solver")
     parts = {
         "schema_link",
         "format",
@@ -110,9 +111,9 @@ def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
         "counters",
         "rules",
     }
-    shown = {each.field.partition(".")[0] for section in (first, third, fourth) for each in section.properties}
+    shown = {each.field.partition(".")[0] for found in sections.values() for each in found}
     assert shown == set(Level.model_fields) - parts - {"terrain", "zones"}
-    assert {each.field for each in second.properties} == set(Settings.model_fields)
+    assert {each.field for each in settings} == set(Settings.model_fields)
 
 
 def test_units_limits_and_tooltips_come_from_the_schema():
@@ -215,7 +216,7 @@ def test_lists_are_typed_with_and_without_brackets(level):
         ("rope", "segments", "2.5", 'Segments: "2.5" is not a whole number'),
         ("rope", "start", "left", 'Start x: "left" is not a number'),
         ("rope", "pinned", "9", '"rope": pinned.0: 9 is beyond the last particle, 4'),
-        ("rope", "pinned", "start", 'Held particles: "start" is not a list such as 0, 4, 5'),
+        ("rope", "pinned", "start", 'Pinned particles: "start" is not a list such as 0, 4, 5'),
         ("rope", "pinned", "[" * 3000, None),
         ("mesh", "particles", "[0, 0], 7", None),
         ("rope", "id", "deck", '"deck" is taken; each body, particle, piece of terrain and zone needs its own name'),
@@ -365,7 +366,8 @@ def test_settings_are_set_with_the_formats_types(level):
     document = Document(level)
 
     def setting(field):
-        return next(each for each in level_properties(document)[1].properties if each.field == field)
+        found = [each for section in level_properties(document) for each in section.properties]
+        return next(each for each in found if each.field == field)
 
     document = setting("substeps").set(document, "auto")
     assert document.level.settings.substeps == "auto"
@@ -564,25 +566,32 @@ def test_what_only_some_of_a_mixed_selection_have_is_there_for_those():
     assert changed.particles == level.particles
 
 
-def test_what_hands_may_do_is_typed_as_words_and_numbers_and_what_is_wrong_is_said(level):
+def test_what_hands_may_do_is_ticked_with_numbers_and_what_is_wrong_is_said(level):
     document = Document(level)
 
     def hands(field):
-        return next(each for each in level_properties(document)[0].properties if each.field == field)
+        (found,) = (each for each in level_properties(document) if each.title == "Hands")
+        return {each.field: each for each in found.properties}.get(field)
 
-    for field, text in (("hands", True), ("hands.may", "add, grab"), ("hands.at_most.add", "3")):
-        each = hands(field)
-        document = each.set(document, each.typed(text) if isinstance(text, str) else text)
-    assert document.level.hands.may == ("add", "grab") and document.level.hands.budgets == {"add": 3}
-    assert hands("hands.may").texts == ("add, grab",) and hands("hands.at_most.add").texts == ("3",)
-    for field, text, said in (
-        ("hands.may", "fly", "fly"),
-        ("hands.may", "grab", "at_most"),
-        ("hands.bodies", "x", "x"),
+    for field, value in (
+        ("hands.may", "nothing"),
+        ("hands.may.add", True),
+        ("hands.may.grab", True),
+        ("hands.at_most.add", 3),
     ):
-        with pytest.raises(EditError, match=said):
-            hands(field).set(document, hands(field).typed(text))
-    document = hands("hands").set(document, False)
+        document = hands(field).set(document, value)
+    assert document.level.hands.may == ("grab", "add") and document.level.hands.budgets == {"add": 3}
+    assert hands("hands.at_most.cut") is None and hands("hands.at_most.add").texts == ("3",)
+    with pytest.raises(EditError, match="no body or particle"):
+        hands("hands.bodies").set(document, "x")
+    name = level.bodies[0].id
+    only = hands("hands.bodies").set(document, name)
+    assert only.level.hands.bodies == (name,)
+    # What may not be done has no number, and without limits there is nothing in the file.
+    document = hands("hands.may.add").set(only, False)
+    assert document.level.hands.budgets == {}
+    for field, value in (("hands.bodies", None), ("hands.may", "all")):
+        document = hands(field).set(document, value)
     assert document.level.hands is None
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters
+from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters, vain_goals
 from sandbox.editor.scene import make_scene
 from tests.editor.test_rule_names import document
 
@@ -94,3 +94,23 @@ def test_a_loss_that_comes_before_any_win_is_found(win, lose, is_late):
     texts = found([{"when": win, "then": [{"win": "Done"}]}, {"when": lose, "then": [{"fail": "Late"}]}])
     late = 'No run is won: "rule 1" loses it by 10 s, and "rule 0" wins at 20 s at the earliest'
     assert texts == ([late] if is_late else [])
+
+
+WIN = {"when": {"time": 5.0}, "then": [{"win": "Won"}]}
+
+
+@pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ({"goal": "Bring it home"}, 'No rule wins the level, and its goal says: "Bring it home"'),
+        ({"rules": [WIN], "goal": "Bring it home", "hands": {"may": ["grab"]}}, None),
+        ({"rules": [WIN], "hands": {"may": []}}, "Hands may do nothing"),
+        ({"rules": [WIN], "hands": {"may": ["grab", "push"], "bodies": []}}, "Hands may do nothing"),
+        ({"rules": [WIN], "hands": {"may": ["grab", "add"], "bodies": []}}, None),
+        ({"rules": [{**WIN, "when": {"key": "g"}}], "hands": {"may": []}}, None),
+    ],
+)
+def test_goals_are_found_that_nobody_wins_or_nobody_can_do_anything_for(parts, said):
+    level = document(**{"rules": [], **parts}).level
+    found = [each.text for each in vain_goals(level) if each is not None]
+    assert (said is None and not found) or (len(found) == 1 and found[0].startswith(said)), found

@@ -292,7 +292,7 @@ class DocumentActions:
             return
         editor.cancel()
         before = editor.document.level
-        editor.apply("Revert to the file", Document(level))
+        editor.take_over("Revert to the file", Document(level))
         editor.history.mark_saved()
         self.give_up()
         self._reported_change = False
@@ -396,7 +396,7 @@ class DocumentActions:
         else:
             self._show_edited(orphan.edited)
         assert self.editor is not None and self._autosave is not None
-        self.editor.apply("Recover", Document(level))
+        self.editor.take_over("Recover", Document(level))
         self.editor.fit()
         self._autosave.adopt(orphan, level)
 

@@ -160,15 +160,19 @@ class EditScreen:
         return True
 
     def apply(self, label: str, document: Document, merge: str | None = None) -> None:
-        """Take a document over as a step of the history; rules that go with what they named are told of."""
-        before = self.document.level
-        lost = lost_rules(before, document.level)
-        self.history.apply(label, document, merge)
-        self.level_changed(label, before)
+        """Take an edited document over as a step of the history; rules that go with what they named are told of."""
+        lost = lost_rules(self.document.level, document.level)
+        self.take_over(label, document, merge)
         if lost:
             one = len(lost) == 1
             names = f"{'Rule' if one else 'Rules'} {', '.join(lost)}"
             self.say(f"{names} went too: what {'it names' if one else 'they name'} is gone. Undo brings it back.")
+
+    def take_over(self, label: str, document: Document, merge: str | None = None) -> None:
+        """Take a document over as a step of the history, another level too."""
+        before = self.document.level
+        self.history.apply(label, document, merge)
+        self.level_changed(label, before)
 
     def level_changed(self, label: str, before: object) -> None:
         """Note the level in the autosave, where it has changed."""

@@ -30,7 +30,12 @@ class Form(PropertyWidgets):
         self, owner: PropertyOwner, area: ScrollArea, above: float = 0.0, below: float = 0.0, empty: str = ""
     ) -> None:
         super().__init__(owner, Widget(owner.ui, pygame.Rect(0, 0, 0, 0), area.content))
-        self.area, self._above, self._below, self._empty = area, above, below, empty
+        self.area, self._above, self._below, self.empty = area, above, below, empty
+
+    def say_if_empty(self, text: str) -> None:
+        """Say something else without properties."""
+        if text != self.empty:
+            self.empty, self._structure = text, None
 
     def make_room(self, above: float) -> None:
         """Leave other room free above; what is shown next keeps it."""
@@ -52,9 +57,9 @@ class Form(PropertyWidgets):
 
     def _lay_out(self, sections: Sequence[Section]) -> None:
         self._y = self._above
-        if not sections and self._empty:
+        if not sections and self.empty:
             place = self._ui.rect(0, self._y + 4, self._inside, 120)
-            TextBlock(self._ui, place, self._empty, self._holder, 12.5)
+            TextBlock(self._ui, place, self.empty, self._holder, 12.5)
         for number, section in enumerate(sections):
             self._y += SECTION_GAP if number else 0.0
             self._add_heading(section, is_first=number == 0)

@@ -13,11 +13,16 @@ from sandbox.editor.rule_text import named_zones
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.kinds.bodies import expansion
+from sandbox.level.plan.actuators import driving_keys
+from sandbox.level.plan.rules import rule_keys
 from sandbox.level.plan.run_rules import run_rules
+from sandbox.level.rules.player_limits import DEEDS
 from sandbox.level.rules.rule import QuestionDef, RuleDef
 
 # Directions in which it is looked how long a body is.
 DIRECTIONS = 36
+# What hands do to a body.
+_ON_BODIES = {"grab", "pin", "cut", "remove", "move", "push", "firmness", "mass", "material", "inflation"}
 
 
 def hopeless_rules(level: Level, scene: Scene) -> Rule:
@@ -82,6 +87,20 @@ def open_goals(level: Level) -> Rule:
         pulling = {"may": ("grab",), "bodies": level.hands and level.hands.bodies}
         remedy = Remedy("Let hands only pull", lambda document: set_level_field(document, "hands", pulling))
         yield Finding("warning", text, frozenset(), None, remedy)
+    yield None
+
+
+def vain_goals(level: Level) -> Rule:
+    """A goal that is told and no rule wins, and one for which nobody can do anything."""
+    if level.goal and not level.has_goal:
+        text = f'No rule wins the level, and its goal says: "{level.goal}". Add one on the page Rules'
+        yield Finding("warning", text, frozenset(), None)
+    hands = level.hands
+    if level.has_goal and hands is not None and not (driving_keys(level) or rule_keys(level)):
+        may = set(hands.may or ()) if hands.may is not None else set(DEEDS)
+        if not (may - _ON_BODIES if hands.bodies == () else may):
+            text = "Hands may do nothing, and there is no key: the level wins by itself or never"
+            yield Finding("hint", text, frozenset(), None)
     yield None
 
 

@@ -22,7 +22,7 @@ from sandbox.editor.lint.finding import (
     middle_of,
     place_of,
 )
-from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters, open_goals
+from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters, open_goals, vain_goals
 from sandbox.editor.lint.hydraulics import hydraulics_at_another_length
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
@@ -44,6 +44,7 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         hopeless_rules(level, scene),
         idle_counters(level),
         open_goals(level),
+        vain_goals(level),
         springs_past_limits(level, scene),
         falling_parts(level, scene),
         idle_items(scene),

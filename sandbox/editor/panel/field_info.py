@@ -57,8 +57,8 @@ _TITLES = {
     "a": "End a",
     "b": "End b",
     "id": "Name",
-    "pin": "Held ends",
-    "pinned": "Held",
+    "pin": "Pinned ends",
+    "pinned": "Pinned",
     "cut": "Cut springs",
     "phase": "Phase, of a period",
     "drive": "Muscle",
@@ -142,7 +142,7 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> F
     unit = value.get("unit", value.get("items", {}).get("unit", ""))
     about = FieldInfo(
         kind=kind,
-        title="Held particles" if name == "pinned" and kind == "list" else title_of(name),
+        title="Pinned particles" if name == "pinned" and kind == "list" else title_of(name),
         unit=DEGREES if unit == _RADIANS else unit,
         low=low,
         high=numbers.get("maximum"),

@@ -1,7 +1,6 @@
 """Properties of the level itself, and of how its time passes."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -9,16 +8,16 @@ from sandbox.editor.document import Document
 from sandbox.editor.edits.fields import set_level_field, set_setting
 from sandbox.editor.panel.extra_values import extras_properties
 from sandbox.editor.panel.field_info import FieldInfo, fields_of
+from sandbox.editor.panel.hands_form import hands_properties
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import ContactsDef, Level, Settings
-from sandbox.level.rules.player_limits import BudgetDef, PlayerLimits
 
 # Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
 FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
 ROOM_SHARE, SMALLEST_ROOM = 0.25, 1.0
 ROOM_DECIMALS = 2
-_LEVEL_FIELDS = ("name", "description", "goal", "author", "licence", "tags", "view")
+_LEVEL_FIELDS = ("name", "goal", "description", "author", "licence", "tags", "view")
 
 
 def level_properties(document: Document) -> tuple[Section, ...]:
@@ -31,9 +30,10 @@ def level_properties(document: Document) -> tuple[Section, ...]:
         value = getattr(level.settings, name)
         settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
     return (
-        Section("Level", (*of_level, *_object(document, "look"), *_hands(document))),
-        Section("Time and solver", tuple(settings)),
+        Section("Level", (*of_level, *_object(document, "look"))),
+        Section("Hands", hands_properties(level)),
         Section("Contacts", tuple(_contacts(document) + _object(document, "walls"))),
+        Section("Time and solver", tuple(settings), is_rare=True),
         Section("Other", tuple(extras_properties(about["extras"], [level.extras], _change_extras))),
     )
 
@@ -72,29 +72,6 @@ def _contacts(document: Document) -> list[Property]:
     ]
 
 
-def _hands(document: Document) -> list[Property]:
-    """Properties of what hands may do: lists as words, and a number for each budget."""
-    hands = document.level.hands
-    found = _object(document, "hands")
-    if hands is None:
-        return found
-
-    def set_budget(deed: str, document: Document, value: Any) -> Document:
-        now = document.level.hands or PlayerLimits()
-        return set_level_field(document, "hands", {**now.__dict__, "at_most": {**now.at_most.__dict__, deed: value}})
-
-    lists = [
-        replace(each, about=replace(each.about, kind="words")) if each.field in ("hands.may", "hands.bodies") else each
-        for each in found
-        if each.field != "hands.at_most"
-    ]
-    budgets = [
-        Property(f"hands.at_most.{deed}", about, getattr(hands.at_most, deed), partial(set_budget, deed))
-        for deed, about in fields_of(BudgetDef).items()
-    ]
-    return [*lists, *budgets]
-
-
 def _first_walls(document: Document) -> dict[str, Any]:
     """Walls around the level's view, or around everything with some room."""
     level = document.level
@@ -107,7 +84,7 @@ def _first_walls(document: Document) -> dict[str, Any]:
 
 
 _FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {
-    "contacts": lambda _: {}, "walls": _first_walls, "look": lambda _: {}, "hands": lambda _: {},
+    "contacts": lambda _: {}, "walls": _first_walls, "look": lambda _: {},
 }  # fmt: skip
 
 

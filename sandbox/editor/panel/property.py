@@ -137,6 +137,14 @@ def named(properties: Iterable[Property], owner: str) -> tuple[Property, ...]:
     return tuple(replace(each, label=f"{owner}: {each.step.lower()}") for each in properties)
 
 
+def toggled(names: Sequence[str], value: Any) -> tuple[str, ...]:
+    """A list of names with a picked one that joins it, or leaves it; another list takes its place."""
+    if not isinstance(value, str):
+        return tuple(value)
+    rest = tuple(name for name in names if name != value)
+    return rest if len(rest) < len(names) else (*names, value)
+
+
 def found_sections(sections: Iterable[Section], query: str) -> tuple[Section, ...]:
     """The sections with those properties alone that have some words, in any case, in their title or their tooltip.
 

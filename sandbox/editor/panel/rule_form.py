@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.edits.rule_edits import (
     FIRST_KEY,
     RuleData,
@@ -19,7 +18,7 @@ from sandbox.editor.edits.rule_edits import (
 )
 from sandbox.editor.panel.action_form import action_properties
 from sandbox.editor.panel.field_info import FieldInfo, choice_of, fields_of
-from sandbox.editor.panel.property import Property, Section, named
+from sandbox.editor.panel.property import Property, Section, named, toggled
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level
 from sandbox.level.plan.run_rules import each_in, members_of, several
@@ -60,11 +59,9 @@ def rule_properties(level: Level, index: int) -> tuple[Section, ...]:
     return tuple(Section(title, named(part, f"Rule {rule.id}")) for title, part in parts.items())
 
 
-def score_properties(level: Level) -> tuple[Section, ...]:
-    """Properties of the counters of a level, and of the line that says its goal."""
-    about = replace(fields_of(Level)["goal"], title="Goal line")
-    goal = Property("goal", about, level.goal, lambda document, value: set_level_field(document, "goal", value))
-    return Section("Counters", tuple(_counter_properties(level))), Section("For players", (goal,))
+def counter_properties(level: Level) -> tuple[Section, ...]:
+    """Properties of the counters of a level."""
+    return (Section("Counters", tuple(_counter_properties(level))),)
 
 
 # The question.
@@ -303,14 +300,7 @@ def _of_things(level: Level, when: RuleData, how: str, names: Sequence[str]) -> 
 
 def _set_several(at: _At, field: str, document: Document, value: Any) -> Document:
     """Set the things that a question names; one that is picked joins them, or leaves them."""
-
-    def change(_: Level, when: RuleData) -> RuleData:
-        names = list(when[field])
-        picked = [name for name in names if name != value]
-        new = value if not isinstance(value, str) else picked if len(picked) < len(names) else [*names, value]
-        return {**when, field: tuple(new)}
-
-    return _asking(at, document, change)
+    return _asking(at, document, lambda _, when: {**when, field: toggled(when[field], value)})
 
 
 def _set_touching(at: _At, place: int, document: Document, value: Any) -> Document:

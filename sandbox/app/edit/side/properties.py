@@ -21,7 +21,9 @@ from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import Property, Section, found_sections
 from sandbox.level.document.model import Level
 
-OF_LEVEL = "Nothing is selected: the level"
+NOTHING = (
+    "Nothing is selected. Click something on the sheet, or draw it. What is about the whole level is on the page Level."
+)
 FIND = "Find a field"
 MEASURED = FieldInfo(
     "text", "In play",
@@ -45,7 +47,7 @@ class PropertiesPage(SidePage):
         self.search = ui.field(line, "", lambda _: True, container, 80, hint=FIND)
         below = pygame.Rect(place.left, place.top + row + gap, place.width, place.height - row - gap)
         self._area = ScrollArea(ui, below, container)
-        self.form = Form(screen, self._area, above=6.0, empty=NOT_FOUND)
+        self.form = Form(screen, self._area, above=6.0)
         self._shown: Document | None = None
         self._query = self._softness = ""
 
@@ -59,7 +61,9 @@ class PropertiesPage(SidePage):
                 self.search.typed = ""
             self._shown, self._query, self._softness = document, query, softness
             sections = _sections(document, softness)
-            self.form.show(found_sections(sections, query) if query else sections)
+            is_found = bool(query or document.selection)
+            self.form.say_if_empty(NOT_FOUND if is_found else NOTHING)
+            self.form.show(found_sections(sections, query) if query else sections if is_found else ())
         self.form.refresh()
 
     def _measured(self) -> str:
@@ -72,8 +76,7 @@ class PropertiesPage(SidePage):
 
 def _sections(document: Document, softness: str) -> tuple[Section, ...]:
     if not document.selection:
-        first, *rest = level_properties(document)
-        return (replace(first, title=OF_LEVEL), *rest)
+        return level_properties(document)
     sections = properties(document)
     if not softness:
         return sections

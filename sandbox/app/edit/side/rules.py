@@ -16,7 +16,7 @@ from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.edits.rule_edits import Template, delete_rule, duplicate_rule, templates, why_not
 from sandbox.editor.forecast import Firing
-from sandbox.editor.panel.rule_form import rule_properties, score_properties
+from sandbox.editor.panel.rule_form import counter_properties, rule_properties
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.rules.rule import RuleDef
 
@@ -47,7 +47,7 @@ class _Lines(RowList):
 
 
 class RulesPage(SidePage):
-    """All rules as lines, of which one is open: below it stands its form; then counters and the line for the goal."""
+    """All rules as lines, of which one is open: below it stands its form; then counters."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
@@ -115,11 +115,11 @@ class RulesPage(SidePage):
             self._area.scroll_to(top)
 
     def _place_rest(self) -> None:
-        """Put the lines behind the open rule, and what is about the whole level, below the form."""
+        """Put the lines behind the open rule, and counters, below the form."""
         self._end = self.form.end
         self._rest.move_to((0, self._ui.px(self._end)))
         self.tail.make_room(self._end + self._rest.place.height / self._ui.scale + GAP)
-        self.tail.show(score_properties(self._screen.document.level))
+        self.tail.show(counter_properties(self._screen.document.level))
 
     @property
     def rows(self) -> list[Row]:
