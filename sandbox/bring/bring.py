@@ -1,7 +1,9 @@
 """bring: a level of a file of another program, and a word about all of it that did not come in."""
 
+import contextlib
 import importlib.util
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,12 +18,14 @@ from sandbox.bring.sketch import Kind, LeftOut, Object, Unreadable, check_points
 from sandbox.bring.svg import read_svg
 from sandbox.bring.tiled import map_data, read_tiled, tileset_data
 from sandbox.level.document.messages import worded
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import Level, Settings
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.foreign import BROUGHT, PNG, RUBE, SVG, TILED_XML, foreign_bytes, foreign_keys
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.reading.files import read_bytes
 from sandbox.level.reading.parse import json_value
+from sandbox.physics.softness.firmness import FirmnessRange, OutOfReach
 
 # What the readers need beside what is always installed.
 MODULES = ("shapely", "svgelements", "defusedxml", "contourpy", "PIL")
@@ -29,6 +33,8 @@ MISSING = 'bringing in drawings and maps needs more packages: pip install "sprin
 # Tile sets that a map may name.
 TILE_SETS = 50
 HEAD = 4096  # [bytes]
+# How much of the work is done once outlines are bodies.
+MADE = 0.4
 MARK = b"\xef\xbb\xbf"
 
 
@@ -72,10 +78,13 @@ def usual_kind(path: str | os.PathLike[str]) -> Kind | None:
     return None if name == RUBE else "jelly" if name in (SVG, PNG) else "ground"
 
 
-def bring(path: str | os.PathLike[str], kind: Kind | None = None, width: float | None = None) -> Brought:
+def bring(
+    path: str | os.PathLike[str], kind: Kind | None = None, width: float | None = None,
+    tell: Callable[[float], object] = lambda done: None,
+) -> Brought:  # fmt: skip
     """Make a level of a file; kind: what outlines become, width: of all of it [m]; None: as is usual for such a file.
 
-    Raises LevelError with one line.
+    tell: is called with how much is done, 0..1; what it raises ends the work. Raises LevelError with one line.
     """
     source = os.fspath(path)
     if any(importlib.util.find_spec(module) is None for module in MODULES):
@@ -89,6 +98,9 @@ def bring(path: str | os.PathLike[str], kind: Kind | None = None, width: float |
         # Numbers beyond all bounds are found where they have come to.
         with np.errstate(all="ignore"):
             level, left_out = _level(name, data, raw, source, kind, width)
+        for number, body in enumerate(level.bodies):
+            tell(MADE + (1.0 - MADE) * number / len(level.bodies))
+            _try_firmness(body, level.settings)
         check_level(level, source)
     except Unreadable as error:
         raise LevelError(source, [("", str(error))]) from None
@@ -99,6 +111,14 @@ def bring(path: str | os.PathLike[str], kind: Kind | None = None, width: float |
     except (MemoryError, RecursionError):
         raise LevelError(source, [("", "is too large or too deep to be read")]) from None
     return Brought(level, left_out.words())
+
+
+def _try_firmness(body: AnyBody, settings: Settings) -> None:
+    """Find out how firm a body can be, which takes most of the time and is kept for the check of the whole level."""
+    if body.firmness is not None:
+        form = FirmnessRange.of(expansion(body).stiff_form, settings.gravity, settings.tick_rate)
+        with contextlib.suppress(OutOfReach):
+            form.coefficients(body.firmness.asked)
 
 
 def _level(

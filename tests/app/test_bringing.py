@@ -1,5 +1,8 @@
 """Drawings and maps of other programs, dropped on the window: a question, then jellies or ground in the sheet."""
 
+import math
+import threading
+
 import pygame
 import pytest
 
@@ -88,3 +91,67 @@ def test_the_editor_that_is_begun_with_a_drawing_asks_what_it_is_to_become(edit,
     driver.key(pygame.K_RETURN)
     close_page(driver)
     assert len(driver.editor.document.level.bodies) == 3
+
+
+def test_a_file_that_is_opened_from_the_editors_gallery_is_a_level_of_its_own_and_seen(edit, tmp_path):
+    driver = edit(small_level())
+    before = driver.editor
+    (tmp_path / "scene.json").write_bytes(rube())
+    driver.key(pygame.K_o, pygame.KMOD_CTRL)
+    assert driver.app.gallery is not None
+    driver.choose("Open file")
+    driver.frames(2)
+    driver.type(str(tmp_path / "scene.json"))
+    driver.key(pygame.K_RETURN)
+    driver.frames(2)
+    driver.key(pygame.K_RETURN)
+    close_page(driver)
+    assert driver.app.gallery is None and driver.editor is not before
+    assert driver.editor.document.level.name == "scene"
+    assert before.document.level == small_level()
+
+
+def wavy(count):
+    """A drawing of so many outlines with fine edges, of which each takes a mesh."""
+
+    def ring(x, y):
+        turns = [k / 40 * math.tau for k in range(40)]
+        places = [(x + (9 + math.sin(7 * t)) * math.cos(t), y + (9 + math.sin(7 * t)) * math.sin(t)) for t in turns]
+        return "M" + "L".join(f"{a:.2f},{b:.2f}" for a, b in places) + "Z"
+
+    paths = "".join(f'<path d="{ring(30 * (k % 6), 30 * (k // 6))}"/>' for k in range(count))
+    return f'<svg xmlns="http://www.w3.org/2000/svg">{paths}</svg>'.encode()
+
+
+@pytest.mark.parametrize("cancels", [True, False])
+def test_what_takes_long_to_come_in_shows_a_bar_and_is_cancelled_by_escape(edit, tmp_path, monkeypatch, cancels):
+    driver = edit(small_level())
+    before, steps, bars = driver.editor.document.level, driver.editor.history.index, []
+
+    def draw_bar(surface, ui, fraction, text, pointer):
+        bars.append((fraction, text))
+        if cancels:
+            driver.post(pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0, unicode="", scancode=0)
+        return pygame.Rect(0, 0, 0, 0)
+
+    monkeypatch.setattr("sandbox.app.play.status._PATIENCE", 0.0)
+    monkeypatch.setattr("sandbox.app.play.status._DRAWN_EVERY", 0.0)
+    monkeypatch.setattr("sandbox.app.play.status.draw_work", draw_bar)
+    # Another drawing each time, as what was found out of one is kept.
+    count = 24 if cancels else 18
+    drop(driver, tmp_path / "wavy.svg", wavy(count))
+    driver.key(pygame.K_RETURN)
+    close_page(driver)
+    for thread in threading.enumerate():
+        if thread.name == "brings in":
+            thread.join(60.0)
+            assert not thread.is_alive()
+    assert bars and {text for _, text in bars} == {"Bringing in wavy.svg"}
+    shares = [share for share, _ in bars]
+    assert shares == sorted(shares) and shares[-1] <= 1.0
+    came = driver.editor.document.level
+    if cancels:
+        assert came == before and driver.editor.history.index == steps
+        assert any("Cancelled: nothing came in" in notice for notice in driver.notices)
+    else:
+        assert len(came.bodies) == len(before.bodies) + count and shares[-1] > 0.4

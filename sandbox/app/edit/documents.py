@@ -90,9 +90,14 @@ class DocumentActions:
 
         self.new(begin, new_level())
 
-    def edit_level(self, level: Level, label: str = "Open") -> None:
-        """Edit a level that has no file of its own."""
-        self.if_saved(lambda: self._show(level, LevelFile(), label))
+    def edit_level(self, level: Level, label: str = "Open", then: Callable[[], object] = lambda: None) -> None:
+        """Edit a level that has no file of its own, and go on."""
+
+        def show() -> None:
+            self._show(level, LevelFile(), label)
+            then()
+
+        self.if_saved(show)
 
     def edit_run(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
         """Edit the level of a run, in the file that it is from where that still holds it, and go on."""

@@ -242,17 +242,17 @@ _PLAYING_AGAIN = "Playing the run again"
 
 
 class RunProgress:
-    """Called with ticks done and ticks in all while a session steps again."""
+    """Called with what is done and all there is, while a session steps again or other work holds the window."""
 
     def __init__(self, app: Application) -> None:
         self._app = app
         self._started = self._last = self._drawn = 0.0
-        self._done = 0
+        self._done = 0.0
         self._is_seen = False
         # Where the button is that cancels it [pixels].
         self._button = pygame.Rect(0, 0, 0, 0)
 
-    def show(self, done: int, total: int, can_cancel: bool) -> None:
+    def show(self, done: float, total: float, can_cancel: bool, text: str = _PLAYING_AGAIN) -> None:
         """Draw the bar, where it has taken long enough to wonder. Raises Interrupted where the person cancels it."""
         now = time.perf_counter()
         if done < self._done or now - self._last > _NEW_AFTER:
@@ -267,11 +267,9 @@ class RunProgress:
         self._drawn, self._is_seen = now, True
         display, fraction = self._app.display, done / max(total, 1)
         if can_cancel:
-            self._button = draw_work(
-                display.surface, self._app.ui, fraction, _PLAYING_AGAIN, self._pixel(pygame.mouse.get_pos())
-            )
+            self._button = draw_work(display.surface, self._app.ui, fraction, text, self._pixel(pygame.mouse.get_pos()))
         else:
-            draw_bar(display.surface, self._app.ui, fraction, _PLAYING_AGAIN)
+            draw_bar(display.surface, self._app.ui, fraction, text)
         display.flip()
 
     def _is_cancelled(self) -> bool:

@@ -193,6 +193,10 @@ class App:
         """Show a bar while a run is played again, for an undo or a recording, where that takes long."""
         playback.session.progress = partial(self._progress.show, can_cancel=can_cancel)
 
+    def show_progress(self, done: float, text: str) -> None:
+        """Show how much of what the window waits for is done, 0..1. Raises Interrupted where the person cancels it."""
+        self._progress.show(done, 1.0, can_cancel=True, text=text)
+
     def open_gallery(self, section: str = "levels", query: str = "") -> None:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
