@@ -162,10 +162,15 @@ def _stop(world: World, chosen: NDArray[np.bool_]) -> None:
 
 
 class Firing:
-    """A run in work, a slice at a time; times: when each rule fired [s], by its id; fault: why it went no further."""
+    """A run in work, a slice at a time; times: when each rule fired [s], by its id; fault: why it went no further.
+
+    span: what of the run is looked at, in words: "the last run", or as much of a long one as there is time for.
+    """
 
     def __init__(self, level: Level, commands: TimedCommands, last_tick: int) -> None:
         self.level = level
+        ticks = round(LONGEST_RUN * level.settings.tick_rate)
+        self.span = "the last run" if last_tick <= ticks else f"the first {LONGEST_RUN:g} s of the last run"
         self.times: dict[str, list[float]] = {rule.id: [] for rule in level.rules}
         self.is_done = False
         self.fault = ""

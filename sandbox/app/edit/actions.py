@@ -81,7 +81,9 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
             "mirror": lambda: _ask_mirror(screen),
             "array": lambda: _ask_array(screen),
             "parts": lambda: _ask_parts(screen),
+            "rename": lambda: _rename(screen),
             "menu": lambda: _show_menu(screen, app),
+            "thing_menu": screen.open_menu_by_key,
             "group": lambda: _edit_selection(screen, "Group", group),
             "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing in the selection is in a group."),
             "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
@@ -206,6 +208,16 @@ def _lock(screen: Editing) -> None:
         return
     screen.set_visibility(visibility.lock(selection or visibility.locked, on=bool(selection)))
     screen.select(frozenset())
+
+
+def _rename(screen: Editing) -> None:
+    """Ask for another name of the selected thing or group, on the page of objects."""
+    if _has_selection(screen):
+        if screen.side is None:
+            screen.toggle_side()
+        assert screen.side is not None
+        screen.side.choose("objects")
+        screen.side.ask_name()
 
 
 def _show_parts(screen: Editing) -> None:

@@ -67,12 +67,12 @@ WIDTH = 250.0
 MOST_UNDER = 6
 # Actions of the menu over something, and of that over the bare sheet, in their order.
 OVER_THINGS = (
-    "cut", "copy", "paste", "duplicate", "delete", "group", "ungroup", "mirror", "array", "forward", "backward", "hide",
-    "lock", "trail", "try_range", "keep_part",
+    "rename", "cut", "copy", "paste", "duplicate", "delete", "group", "ungroup", "mirror", "array", "forward",
+    "backward", "hide", "lock", "trail", "try_range", "keep_part",
 )  # fmt: skip
 OVER_NOTHING = ("paste", "select_all", "find", "hide", "lock", "fit")
 SHORT = {
-    "delete": "Delete", "paste": "Paste here",
+    "rename": "Rename...", "duplicate": "Duplicate", "delete": "Delete", "paste": "Paste here",
     "group": "Group", "ungroup": "Ungroup", "forward": "One forward", "backward": "One backward",
     "array": "Several copies...", "mirror": "Mirror...", "keep_part": "Keep as a part...", "fit": "Fit to view",
     "trail": "Trail: where it will go", "try_range": "Try a range of a number...", "hide": "Hide", "lock": "Lock",
@@ -210,11 +210,13 @@ class _Entry(NamedTuple):
     do: Callable[[], object]
 
 
-def open_context_menu(screen: Editing, pixel: Pixel) -> None:
-    """Select what lies under a pixel, unless it is selected, and offer what can be done there."""
+def open_context_menu(screen: Editing, pixel: Pixel, keeps_selection: bool = False) -> None:
+    """Select what lies under a pixel, unless it is selected or that is to stay, and offer what can be done there."""
     at = screen.camera.to_world(pixel)
     under = items_at(screen.scene, at, screen.reach, screen.visibility.closed, MOST_UNDER)
-    if not under:
+    if keeps_selection:
+        under = list(screen.document.selection)[:1]
+    elif not under:
         screen.select(frozenset())
     elif not screen.document.selection.intersection(under):
         screen.select(with_groups(screen.document.level, frozenset(under[:1])) - screen.visibility.closed)

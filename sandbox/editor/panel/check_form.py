@@ -11,7 +11,7 @@ from sandbox.editor.edits.materials import set_checks
 from sandbox.editor.items import chosen_bodies, chosen_particles
 from sandbox.editor.panel.field_info import FieldInfo, Pick, fields_of
 from sandbox.editor.panel.level_properties import FIRST_ROOM
-from sandbox.editor.panel.property import Property, Section, with_axes
+from sandbox.editor.panel.property import Property, Section, named, with_axes
 from sandbox.level.checks import METRICS, SUBJECTS, CheckDef, HoldDef, bounds_of, window_of
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
@@ -54,7 +54,8 @@ def check_properties(document: Document, index: int) -> tuple[Section, ...]:
         each = replace(about[name], unit=measured.unit, empty="no bound" if usual is None else f"{usual:g}")
         remark = partial(_bound_remark, index, name)
         made.append(Property(name, each, getattr(check, name), partial(_set_bound, index, name), remark=remark))
-    return (Section("Check", (*made, *_time_properties(check, index), *_hold_properties(document, check, index))),)
+    made += [*_time_properties(check, index), *_hold_properties(document, check, index)]
+    return (Section("Check", named(made, f"Check {check.name}")),)
 
 
 def _time_properties(check: CheckDef, index: int) -> list[Property]:

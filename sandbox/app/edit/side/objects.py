@@ -54,7 +54,7 @@ class ObjectsPage(SidePage):
             (LOCK, self._lock, "Clicks on the sheet do not select it; this list does"),
             ("Up", partial(self._move, False), "Move it up: it is drawn behind the one above"),
             ("Down", partial(self._move, True), "Move it down: it is drawn in front of the one below"),
-            ("Rename", self._ask_name, "Rename it everywhere"),
+            ("Rename", self.ask_name, "Rename it everywhere"),
         )
         wide = (width - (len(actions) - 1) * gap) // len(actions)
         self.buttons = {}
@@ -153,8 +153,14 @@ class ObjectsPage(SidePage):
         if self._screen.edit("Order", partial(shift, later=down)) and self._screen.document.level is before:
             self._screen.say("Nothing of its kind is below it." if down else "Nothing of its kind is above it.")
 
-    def _ask_name(self) -> None:
-        (line,) = self._chosen_lines
+    def ask_name(self) -> None:
+        """Ask for another name of the one thing or group that is selected."""
+        self.search.typed = ""
+        self.refresh()
+        if len({line.items for line in self._chosen_lines}) != 1:
+            self._screen.say("Select one thing, or one group, to rename it.")
+            return
+        line = self._chosen_lines[0]
         only: Item | None = next(iter(line.items)) if len(line.items) == 1 and line.kind[:5] != "group" else None
 
         def answer(name: str) -> str | None:

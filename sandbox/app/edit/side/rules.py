@@ -24,7 +24,8 @@ from sandbox.level.rules.rule import RuleDef
 TIMES = 3
 # Lines that the open rule may take.
 LINES = 4
-NEVER = "would not fire with what hands did in the last run"
+NEVER = "would not fire with what hands did in"
+WORKING = "playing the last run again..."
 NOTHING = "No rules yet. A rule is a sentence: when the ball is inside the basket, win. Add one."
 
 
@@ -77,12 +78,12 @@ class RulesPage(SidePage):
     def refresh(self) -> None:
         """Show the rules as they are now."""
         level, firing = self._screen.document.level, self._screen.watch.firing
-        fired = firing if firing is not None and firing.is_done and firing.level is level else None
-        fresh = (level, self.chosen, fired)
+        fired = firing if firing is not None and firing.level is level else None
+        fresh = (level, self.chosen, fired, fired is not None and fired.is_done)
         if not self._shown or fresh[0] is not self._shown[0] or fresh[1:] != self._shown[1:]:
             is_other = not self._shown or self.chosen != self._shown[1]
             self.chosen = min(self.chosen, len(level.rules) - 1)
-            self._shown = (level, self.chosen, fired)
+            self._shown = (level, self.chosen, *fresh[2:])
             self._show(level.rules, fired)
             if is_other and self.chosen >= 0:
                 self._reveal_open()
@@ -167,15 +168,18 @@ class RulesPage(SidePage):
 def _row(rule: RuleDef, fired: Firing | None, is_open: bool) -> Row:
     """A line of a rule; of the open one with its name, and when it fires in the run that was played last."""
     times = [] if fired is None else fired.times[rule.id]
+    is_known = fired is not None and fired.is_done
     if not is_open:
-        aside = "" if fired is None else f"{times[0]:.1f} s" if times else "not"
+        aside = "" if fired is None or not is_known else f"{times[0]:.1f} s" if times else "not"
         return Row(rule_text(rule), aside=aside, colour=_colour(rule))
     if fired is None:
         detail = rule.id
+    elif not is_known:
+        detail = f"{rule.id}: {WORKING}"
     elif fired.fault:
         detail = f"{rule.id}: {fired.fault}"
     elif not times:
-        detail = f"{rule.id}: {NEVER}"
+        detail = f"{rule.id}: {NEVER} {fired.span}"
     else:
         more = f" and {len(times) - TIMES} more times" if len(times) > TIMES else ""
         detail = f"{rule.id}: fired at {', '.join(f'{time:.1f}' for time in times[:TIMES])} s{more}"

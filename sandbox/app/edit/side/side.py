@@ -92,6 +92,11 @@ class Side:
         elif isinstance(self.page, ObjectsPage):
             self._ui.focus_on(self.page.search)
 
+    def ask_name(self) -> None:
+        """Ask for another name of what is selected, on the page of objects."""
+        if isinstance(self.page, ObjectsPage):
+            self.page.ask_name()
+
     def _tab_button(self, tab: str) -> Button:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
 
