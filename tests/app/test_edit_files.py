@@ -203,13 +203,17 @@ def test_the_gallery_opens_a_shipped_level_as_a_copy_and_my_levels_to_edit(edit,
 
 
 def test_work_of_a_session_that_ended_badly_is_offered_and_comes_back_unsaved(open_app, path):
-    level = small_level(name="Lost work")
+    ground = [{"id": "far", "polyline": [[-200.0, -3.0], [200.0, -3.0]]}]
+    level = small_level(name="Lost work", terrain=ground)
     lose(level, path)
     driver = open_app(small_level())
     driver.app.documents.offer_recovery()
     driver.frames()
     label = next(button.text for button in driver.app.ui.buttons() if "Lost work" in button.text)
+    assert path.name in label
     driver.choose(label)
+    # The level's view is seen, not all of its ground.
+    assert driver.at(7.0, 0.0)[0] - driver.at(-3.0, 0.0)[0] > driver.app.display.surface.get_width() / 4
     assert driver.editor.document.level == level and not driver.editor.history.is_saved
     assert driver.editor.level_file.path == path
     driver.app.documents.close()

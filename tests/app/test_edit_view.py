@@ -247,3 +247,39 @@ def test_the_sheet_can_show_the_level_as_it_is_played_without_its_lattice(edit):
     driver.key(pygame.K_l, pygame.KMOD_SHIFT)
     driver.rest()
     assert np.array_equal(seen(driver, 2, 1), with_lattice)
+
+
+BELT = {"id": "belt", "polygon": [[-2, -2.4], [3, -2.4], [3, -2], [-2, -2]]}
+
+
+def test_a_belt_has_its_marks_on_the_sheet_also_while_it_is_chosen_and_dragged(edit):
+    still, running = (edit(small_level(terrain=[{**BELT, "belt": speed}])) for speed in (0.0, 2.0))
+
+    def strap(x, y):
+        seen = []
+        for driver in (still, running):
+            driver.frames(2)
+            at = tuple(round(value) for value in driver.at(x, y))
+            seen.append(pixels(driver)[at[0] - 30 : at[0] + 30, at[1] - 3 : at[1] + 12])
+        return np.count_nonzero(np.any(seen[0] != seen[1], axis=2))
+
+    assert strap(0.0, -2.0) > 200
+    for driver in (still, running):
+        driver.click_at(0.5, -2.2)
+    assert strap(0.0, -2.0) > 200
+    for driver in (still, running):
+        driver.press(driver.at(0.5, -2.2))
+        driver.move(driver.at(0.5, -1.7))
+        driver.move(driver.at(0.5, -1.2))
+    assert strap(0.0, -1.0) > 200
+
+
+def test_a_low_zone_has_its_name_above_it_and_hidden_things_are_counted_in_the_status(edit):
+    zone = {"id": "gate", "box": [-2, 1.0, 1.0, 1.05]}
+    named, other = (edit(small_level(zones=[{**zone, "id": name}])) for name in ("gate", "pool"))
+    left, top = named.at(-2, 1.05)
+    above = [pixels(each)[round(left) : round(left) + 40, round(top) - 14 : round(top) - 2] for each in (named, other)]
+    assert np.any(above[0] != above[1])
+    named.click_at(2.0, 0.0)
+    named.key(pygame.K_h, pygame.KMOD_CTRL)
+    assert ("1 hidden") in [text for text, _ in named.editor.status(None)]

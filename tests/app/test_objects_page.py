@@ -143,3 +143,15 @@ def test_the_line_that_is_pointed_at_is_lit_on_the_sheet(driver):
     driver.move((rows.rect.left + 40, rows.rect.top + rows._tops[1] + 8))
     driver.frames(2)
     assert driver.app.display.surface.get_at(pixel) != before
+
+
+def test_long_names_are_cut_in_the_middle_so_that_their_ends_tell_them_apart(edit):
+    name = "a very long rope name which goes on and on and on without an end "
+    ropes = [{"type": "rope", "id": f"{name}{k}", "start": [0, k], "end": [4, k], "segments": 4} for k in (1, 2)]
+    driver = edit(small_level(bodies=ropes))
+    driver.editor.side.choose("objects")
+    driver.frames(2)
+    shown = [lines[0] for lines, _ in driver.editor.side.page.list._lines]
+    assert [(text[:6], "\N{HORIZONTAL ELLIPSIS}" in text, text[-1]) for text in shown] == [
+        ("a very", True, "1"), ("a very", True, "2"),
+    ]  # fmt: skip

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.editor.document import Document, EditError, empty_level
+from sandbox.editor.document import Document, EditError, empty_level, select
 from sandbox.editor.edits.fields import set_field
 from sandbox.editor.edits.moving import align, can_scale_unevenly, distribute, mirror, move, rotate, scale
 from sandbox.editor.edits.placing import add_body, add_particle
@@ -237,6 +237,8 @@ def test_aligning_brings_an_edge_or_the_middles_onto_one_line():
 def test_what_is_aligned_already_stays_the_same_level():
     document = align(row((0.0, 0.0), (2.0, 1.0)), "bottom")
     assert align(document, "bottom").level is document.level
+    with pytest.raises(EditError, match="select two things or more to line them up"):
+        align(select(document, frozenset(list(document.selection)[:1])), "left")
 
 
 def test_a_group_is_aligned_as_one():

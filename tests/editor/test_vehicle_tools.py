@@ -72,6 +72,8 @@ def test_a_drag_from_a_particle_makes_the_hub_one_with_it(chassis):
     document = drawn("axle", chassis, (0.0, 0.55), (0.0, 0.1))
     wheel = document.level.bodies[-1]
     assert document.level.welds == (("rear axle", "wheel.hub"),)
+    # The wheel is in the group of what it is on, as is each thing of the chassis.
+    assert {part.group for part in (*document.level.bodies, *document.level.particles)} == {wheel.group} != {None}
     assert wheel.segments == 16 and wheel.radius == 0.45 and not wheel.touches_mount
     assert (wheel.motor.speed, wheel.motor.key, wheel.motor.reverse_key) == (-8.0, "d", "a")
     assert {part.key for part in document.selection} == {"wheel"}

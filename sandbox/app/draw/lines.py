@@ -26,7 +26,8 @@ class Canvas:
         """Whether kernels draw."""
         return self._painter.begin(self.surface)
 
-    def _draw(self, layer: MarkList) -> None:
+    def draw(self, layer: MarkList) -> None:
+        """Draw marks."""
         # The clip may be another by now.
         self._painter.begin(self.surface)
         self._painter.marks(layer, _NO_TILES)
@@ -35,19 +36,19 @@ class Canvas:
         """Draw segments (m, 4) = x1, y1, x2, y2 [pixels] in colours (m,) 0xRRGGBB, width [pixels]."""
         layer = MarkList()
         layer.strokes(ends, width / 2, colours)
-        self._draw(layer)
+        self.draw(layer)
 
     def plain_lines(self, ends: NDArray[np.float64], colours: NDArray[np.int64]) -> None:
         """Draw segments as `lines` does, a pixel wide and with steps, in a tenth of the time."""
         layer = MarkList()
         layer.hairs(ends, colours)
-        self._draw(layer)
+        self.draw(layer)
 
     def discs(self, centres: NDArray[np.float64], radii: NDArray[np.float64], colours: NDArray[np.int64]) -> None:
         """Draw filled circles of centres (n, 2) and radii (n,) [pixels] in colours (n,) 0xRRGGBB."""
         layer = MarkList()
         layer.discs(centres, radii, colours)
-        self._draw(layer)
+        self.draw(layer)
 
 
 # Width of an edge of terrain [pixels at scale 1].

@@ -37,9 +37,9 @@ SMALLEST_GRID, LARGEST_GRID = 0.001, 1_000.0
 
 # Actions that have no button in the bar.
 MENU = (
-    "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "find", "hide",
-    "lock", "grid", "lattice", "try_range", "forward", "backward", "recent", "open_file", "save_as", "revert",
-    "settings",
+    "rename", "thing_menu", "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all",
+    "select_material", "find", "hide", "lock", "grid", "lattice", "try_range", "forward", "backward", "recent",
+    "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
 NO_JOINTS = "Nothing in the selection is joined to anything."

@@ -402,7 +402,10 @@ class DocumentActions:
             self._show_edited(orphan.edited)
         assert self.editor is not None and self._autosave is not None
         self.editor.take_over("Recover", Document(level))
-        self.editor.fit()
+        if level.view is None:
+            self.editor.fit()
+        else:
+            self.editor.show_view()
         self._autosave.adopt(orphan, level)
 
     def _show_edited(self, path: Path | None) -> None:
@@ -467,4 +470,5 @@ def _described(orphan: Orphan) -> str:
     """An autosave in a few words."""
     when = f", {orphan.when.astimezone():%d %B, %H:%M}" if orphan.when is not None else ""
     name = f"“{orphan.name[:40]}”" if orphan.name else "a level"
+    name += f" of {_called(orphan.edited)}" if orphan.edited is not None else ""
     return f"{name}{when}{' (damaged)' if orphan.fault else ''}"

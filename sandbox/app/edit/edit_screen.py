@@ -332,12 +332,17 @@ class EditScreen:
 
     def fit(self) -> None:
         """Show the level's view and the particles about it; again, or without a view: all, terrain and walls too."""
-        level, scene, before = self.document.level, self.scene, (self.camera.centre, self.camera.zoom)
+        level, before = self.document.level, (self.camera.centre, self.camera.zoom)
+        self.show_view()
+        if level.view is None or before == (self.camera.centre, self.camera.zoom):
+            self._fit_to(level.view, self.whole_box)
+
+    def show_view(self) -> None:
+        """Show the level's view and the particles about it, where it has one."""
+        level, scene = self.document.level, self.scene
         if level.view is not None:
             about = scene.bounds(frozenset(item for item in scene.items if item.kind not in ("terrain", "zone")))
             self._fit_to(level.view, about if about is not None and _is_about(about, level.view) else None)
-        if level.view is None or before == (self.camera.centre, self.camera.zoom):
-            self._fit_to(level.view, self.whole_box)
 
     @property
     def whole_box(self) -> Box | None:
@@ -567,6 +572,8 @@ class EditScreen:
             parts.append((f"{warnings} {'warning' if warnings == 1 else 'warnings'}", WARNING))
         if selection:
             parts.append((f"{len(selection):,} selected", MUTED))
+        if self.visibility.hidden:
+            parts.append((f"{len(self.visibility.hidden):,} hidden", MUTED))
         if self.pointer is not None:
             x, y = self.camera.to_world(self.pointer)
             parts.append((f"{x:.3f}, {y:.3f} m", MUTED))

@@ -17,6 +17,8 @@ LABEL_WIDTH = 108.0
 HEADING = 24.0
 SECTION_GAP = 10.0
 NOTE_LINES = 3
+# Height of what it says without properties.
+EMPTY = 120.0
 NOTE_LINE = 15.0
 
 
@@ -58,8 +60,9 @@ class Form(PropertyWidgets):
     def _lay_out(self, sections: Sequence[Section]) -> None:
         self._y = self._above
         if not sections and self.empty:
-            place = self._ui.rect(0, self._y + 4, self._inside, 120)
+            place = self._ui.rect(0, self._y + 4, self._inside, EMPTY)
             TextBlock(self._ui, place, self.empty, self._holder, 12.5)
+            self._y += EMPTY
         for number, section in enumerate(sections):
             self._y += SECTION_GAP if number else 0.0
             self._add_heading(section, is_first=number == 0)

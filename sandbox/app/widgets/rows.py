@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MUTED, TEXT, Colour, mixed
 from sandbox.app.widgets.scroll import BAR_WIDTH, WHEEL_STEP, ScrollBar
-from sandbox.app.widgets.texts import wrapped
+from sandbox.app.widgets.texts import shortened, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
 
@@ -27,7 +27,7 @@ class Row:
     """A row: text, lines in grey below it, a spot of colour before it, the colour of the text.
 
     aside: words in grey at the right, in the line of the text, which is cut to leave them room; indent: steps.
-    lines: how many its texts may take; 0: as many as those of its list.
+    lines: how many its texts may take; 0: as many as those of its list. keeps_end: it is cut in its middle.
     """
 
     text: str
@@ -37,6 +37,7 @@ class Row:
     aside: str = ""
     indent: int = 0
     lines: int = 0
+    keeps_end: bool = False
 
 
 class RowList(Widget):
@@ -101,7 +102,8 @@ class RowList(Widget):
             widest = self.rect.width - left - inset
             aside = ui.font(DETAIL_SIZE).size(row.aside)[0] + ui.px(8) if row.aside else 0
             most = row.lines or self._most_lines
-            lines = wrapped(row.text, font, max(widest - aside, widest // 3), most)
+            wide = max(widest - aside, widest // 3)
+            lines = [shortened(row.text, font, wide, True)] if row.keeps_end else wrapped(row.text, font, wide, most)
             details = wrapped(row.detail, ui.font(DETAIL_SIZE), widest, most) if row.detail else []
             self._lines.append((lines, details))
             count = len(lines) + len(details)

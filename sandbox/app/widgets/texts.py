@@ -23,13 +23,14 @@ def wrapped(text: str, font: pygame.font.Font, widest: int, most_lines: int) -> 
     return lines or [""]
 
 
-def shortened(text: str, font: pygame.font.Font, widest: int) -> str:
-    """A text on one line no wider than `widest` [pixels]; what does not fit ends in an ellipsis."""
-    if font.size(text)[0] <= widest:
-        return text
-    while text and font.size(f"{text}…")[0] > widest:
-        text = text[:-1]
-    return f"{text}…"
+def shortened(text: str, font: pygame.font.Font, widest: int, in_middle: bool = False) -> str:
+    """A text on one line no wider than `widest` [pixels], with an ellipsis at its end or in its middle for the rest."""
+    kept, shown = len(text), text
+    while kept and font.size(shown)[0] > widest:
+        kept -= 1
+        end = kept // 2 if in_middle else 0
+        shown = f"{text[: kept - end]}…{text[len(text) - end :]}"
+    return shown
 
 
 def line_height(font: pygame.font.Font) -> int:

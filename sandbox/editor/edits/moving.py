@@ -85,10 +85,13 @@ def mirror(document: Document, axis: Axis, centre: Point) -> Document:
 
 
 def align(document: Document, edge: Edge) -> Document:
-    """Move every selected item, groups as one, so that an edge or middle lies where that of all of them does."""
+    """Move every selected item, groups as one, so that an edge or middle lies where that of all of them does.
+
+    Raises EditError for less than two.
+    """
     parts, low, high = _boxes(document)
-    if not len(low):
-        return document
+    if len(low) < 2:
+        raise EditError("select two things or more to line them up; a group counts as one")
     axis = 0 if edge in ("left", "right", "centre_x") else 1
     fraction = {"left": 0.0, "bottom": 0.0, "right": 1.0, "top": 1.0}.get(edge, 0.5)
     # Of each and of all: the low border, the high one, or the middle between them.

@@ -32,7 +32,8 @@ _SECTIONS = {
     "Mass": ("weight", "mass", "particle_mass", "end_mass", "hub_mass"),
     "Springs": ("material", "firmness", "rest_length"),
     "Drive": ("drive", "hydraulic", "motor"),
-    "Look": ("look", "water"),
+    "Water": ("water",),
+    "Look": ("look",),
     "Contact": (
         "particle_radius",
         "friction",

@@ -7,6 +7,7 @@ import numpy as np
 
 from sandbox.editor.document import Document, EditError, checked, select
 from sandbox.editor.edits.additions import first_torque
+from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.placing import add_spring
 from sandbox.editor.kinds.wheel import RimDrawing, RimOptions
 from sandbox.editor.scene import Scene, make_scene
@@ -14,10 +15,11 @@ from sandbox.editor.tools.drawing_bodies import known_material, length
 from sandbox.editor.tools.drawing_options import flag_option, number_option
 from sandbox.editor.tools.drawing_tool import EditorTool, staged
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.limits import TORQUE_LIMIT, TURN_LIMIT
 from sandbox.level.format.quantities import Point, replaced
+from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.wheel import WheelDef
 
 # A wheel beside a body hangs on this many of its particles, none farther from the axle than this many radii.
@@ -84,10 +86,15 @@ class AxleDrawing(RimDrawing[AxleOptions]):
         for strut in struts:
             assert strut.name is not None
             document = add_spring(document, f"{wheel.id}.hub", strut.name, known_material(document, STRUT_MATERIAL))
+        # It is in the group of what it is on.
+        mount = points[0].name or (struts[0].name if struts else None)
+        owner = None if mount is None else owner_of(mount)
+        parts: list[AnyBody | ParticleDef] = [*document.level.bodies, *document.level.particles]
+        changes: dict[str, Any] = {"group": next((part.group for part in parts if part.id == owner), None)}
         if self.options.motor:
-            motor = self._motor(document.level)
-            level = replaced(document.level, bodies=(*document.level.bodies[:-1], replaced(wheel, motor=motor)))
-            document = replace(document, level=checked(level))
+            changes["motor"] = self._motor(document.level)
+        level = replaced(document.level, bodies=(*document.level.bodies[:-1], replaced(wheel, **changes)))
+        document = replace(document, level=checked(level))
         return select(document, chosen)
 
     def _motor(self, level: Level) -> MotorDef:

@@ -16,14 +16,19 @@ from sandbox.app.draw.colours import (
     Colour,
     mixed,
     packed,
+    theme_now,
     tone,
     unpacked,
 )
 from sandbox.app.draw.lines import EDGE_WIDTH, FARTHEST, Canvas, fill_solid
+from sandbox.app.draw.raster.painter import MarkList
+from sandbox.app.draw.things.belt_marks import ground_belts, mark_belts
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import ZoneDef
 from sandbox.level.format.look import colour_of
+from sandbox.level.format.quantities import replaced
+from sandbox.level.plan.surfaces import terrain_of
 
 Mask = NDArray[np.bool_]
 # What is only a preview is this much paler; the fill of what is tinted has this share of the tint.
@@ -68,6 +73,21 @@ def paint_ground(canvas: Canvas, camera: Camera, ground: Ground, scale: float) -
             fill_solid(canvas.surface, pixels[scene.corner_item == index], fill)
     ends = np.ascontiguousarray(np.concatenate([pixels[edges[:, 0]], pixels[edges[:, 1]]], axis=1))
     canvas.lines(ends, np.full(len(ends), packed(line)), EDGE_WIDTH * scale)
+    if not ground.ghost:
+        _paint_belts(canvas, camera, ground, scale)
+
+
+def _paint_belts(canvas: Canvas, camera: Camera, ground: Ground, scale: float) -> None:
+    """Mark belts as play does at its beginning."""
+    scene = ground.scene
+    for index, piece in enumerate(scene.level.terrain, scene.terrain_start):
+        if piece.belt and ground.items[index]:
+            form = "polygon" if piece.polygon is not None else "polyline"
+            corners = tuple(map(tuple, scene.corner[scene.corner_item == index].tolist()))
+            terrain = terrain_of(replaced(scene.level, terrain=(replaced(piece, **{form: corners}),), walls=None))
+            layer, at, nobody = MarkList(), camera.project(terrain.vertex), np.zeros(0, dtype=np.bool_)
+            mark_belts(layer, ground_belts(terrain), at, nobody, camera, scale, 0.0, theme_now())
+            canvas.draw(layer)
 
 
 def paint_walls(canvas: Canvas, camera: Camera, box: Box, scale: float, colour: Colour = TERRAIN) -> None:
@@ -129,17 +149,19 @@ def _paint(canvas: Canvas, camera: Camera, pixels: NDArray[np.float64], colour: 
 
 
 def draw_zone_names(surface: pygame.Surface, ui: Ui, camera: Camera, areas: Areas) -> None:
-    """Write the name of each zone into its upper left corner, where it has room."""
+    """Write the name of each zone into its upper left corner, or above that where it has no room."""
     scene, font = areas.scene, ui.font(NAME, True)
     for index, zone in enumerate(scene.level.zones, scene.zone_start):
         if not areas.items[index]:
             continue
         pixels = camera.project(scene.corner[scene.corner_item == index])
         (left, top), (right, bottom) = pixels.min(axis=0).tolist(), pixels.max(axis=0).tolist()
-        if min(right - left, bottom - top) < ui.px(SMALLEST) or right < 0 or bottom < 0:
+        if max(right - left, bottom - top) < ui.px(SMALLEST) or right < 0 or bottom < 0:
             continue
         picture = font.render(zone.id, True, mixed(_colour(zone), TEXT, 0.35))
-        if zone.box is not None:
+        if bottom - top < ui.px(SMALLEST) or right - left < picture.get_width() + ui.px(INSET):
+            at = picture.get_rect(bottomleft=(round(left), round(top)))
+        elif zone.box is not None:
             at = picture.get_rect(topleft=(round(left + ui.px(INSET)), round(top + ui.px(INSET) / 2)))
         else:
             at = picture.get_rect(center=(round((left + right) / 2), round((top + bottom) / 2)))

@@ -104,7 +104,9 @@ class ObjectsPage(SidePage):
                   if line.items <= items]  # fmt: skip
         colour = DISABLED if "hidden" in states else TEXT
         swatch = None if line.material is None else colours.get(line.material)
-        return Row(line.name, "", swatch, colour, ", ".join([line.kind, *states]), int(line.group is not None))
+        aside = ", ".join([line.kind, *states])
+        # Long names often differ at their ends.
+        return Row(line.name, "", swatch, colour, aside, int(line.group is not None), keeps_end=True)
 
     def _choose_first(self) -> None:
         """Select the first line that has the words, and go on in the list."""
