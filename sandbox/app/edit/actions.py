@@ -11,6 +11,7 @@ from sandbox.app.base.shortcuts import shortcuts, tip_of
 from sandbox.app.contracts.application import Application, Editing
 from sandbox.app.draw.camera import Box
 from sandbox.app.draw.looks import material_colours
+from sandbox.app.edit.bar import open_menu_by_key
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.widgets.dialogs import ask, choose, choose_row, fill_in
@@ -83,7 +84,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
             "parts": lambda: _ask_parts(screen),
             "rename": lambda: _rename(screen),
             "menu": lambda: _show_menu(screen, app),
-            "thing_menu": screen.open_menu_by_key,
+            "thing_menu": lambda: open_menu_by_key(screen),
             "group": lambda: _edit_selection(screen, "Group", group),
             "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing in the selection is in a group."),
             "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
@@ -93,7 +94,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
             "forward": lambda: _reorder(screen, "forward"),
             "backward": lambda: _reorder(screen, "backward"),
             "wave_in_order": lambda: _ask_wave(screen),
-            "numbers": screen.focus_numbers,
+            "numbers": lambda: screen.options.focus(),
             "next_item": lambda: _visit(screen, 1),
             "previous_item": lambda: _visit(screen, -1),
             "press": screen.press_cursor,

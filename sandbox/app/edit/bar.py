@@ -226,6 +226,14 @@ def open_context_menu(screen: Editing, pixel: Pixel, keeps_selection: bool = Fal
     open_menu_at(screen.ui, pixel, screen.ui.px(WIDTH), rows, lambda index: entries[index].do(), place)
 
 
+def open_menu_by_key(screen: Editing) -> None:
+    """Offer what can be done with the selection, or else at the keyboard cursor, or the middle of the sheet."""
+    box, place = screen.selection_box, screen.cursor or screen.camera.to_world(screen.camera.middle)
+    if box is not None:
+        place = (box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0
+    open_context_menu(screen, screen.camera.to_pixels(place), keeps_selection=box is not None)
+
+
 def _things(screen: Editing, under: list[Item]) -> list[_Entry]:
     """The things under the pointer, each alone, and the group of the first."""
     level = screen.document.level

@@ -51,8 +51,6 @@ NUDGE_LEAP = 10
 LARGE_SELECTION = 1_000
 # Scenes of this many states are kept, for who goes back to them; one of 20,000 particles takes some megabytes.
 SCENES_KEPT = 4
-# How often it is looked whether another program has written the file [s].
-LOOK_EVERY = 2.0
 # Of a view: what makes it no wider and no higher than this many times is fitted in with it.
 FARTHEST = 3.0
 # View [m] of a level in which nothing is yet.
@@ -96,8 +94,6 @@ class EditScreen:
         self._scales_unevenly: tuple[Document, bool] | None = None
         self._seen: Document | None = None
         self._is_side_late = False
-        # How long ago [s] it was looked whether another program has written the file.
-        self._since_look = 0.0
         self.watch: Watch = Watch(self)
         self.clipboard = Clipboard(self, app.documents.edit_level)
         self.pointer_tools: dict[str, DrawTool | SelectTool] = {
@@ -326,10 +322,6 @@ class EditScreen:
         if self.side is not None:
             self.side.turn_page(by)
 
-    def focus_numbers(self) -> None:
-        """Give the keyboard to the row of numbers."""
-        self.options.focus()
-
     def fit(self) -> None:
         """Show the level's view and the particles about it; again, or without a view: all, terrain and walls too."""
         level, before = self.document.level, (self.camera.centre, self.camera.zoom)
@@ -503,13 +495,6 @@ class EditScreen:
         elif isinstance(tool, DrawTool):
             tool.finish()
 
-    def open_menu_by_key(self) -> None:
-        """Offer what can be done with the selection, or else at the keyboard cursor, or the middle of the sheet."""
-        box, place = self.selection_box, self.cursor or self.camera.to_world(self.camera.middle)
-        if box is not None:
-            place = (box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0
-        open_context_menu(self, self.camera.to_pixels(place), keeps_selection=box is not None)
-
     # A frame.
 
     @property
@@ -521,10 +506,6 @@ class EditScreen:
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Follow the pointer, look for faults a little, and show the state in the widgets."""
         self.view.update(frame_time)
-        self._since_look += frame_time
-        if self._since_look >= LOOK_EVERY and not pygame.mouse.get_pressed()[0]:
-            self._since_look = 0.0
-            self.app.documents.look_at_disk()
         if not pygame.mouse.get_pressed()[0] or pointer is None:
             self.pointer = pointer
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)

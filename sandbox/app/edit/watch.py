@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
+import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.contracts.application import Editing
@@ -20,6 +21,8 @@ from sandbox.session.session import Session
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
 SLICE = 0.004
 PATIENCE = 0.25
+# How often it is looked whether another program has written the file [s].
+LOOK_EVERY = 2.0
 # Time [s] of a frame for values that are tried, for which the person waits.
 TRYING = 0.012
 
@@ -47,7 +50,7 @@ class Watch:
         self._softness: SoftnessReading | None = None
         self._said = ""
         self._level: Level | None = None
-        self._since = 0.0
+        self._since = self._since_look = 0.0
         self._lint: Iterator[Finding | None] | None = None
         self._found: list[Finding] = []
         self._is_reported = False
@@ -167,7 +170,14 @@ class Watch:
         )
 
     def update(self, frame_time: float) -> None:
-        """Let frame_time [s] pass, and work for a moment at findings, forecast, trails and tried values."""
+        """Let frame_time [s] pass, and work for a moment at findings, forecast, trails and tried values.
+
+        Now and then it is looked whether another program has written the file.
+        """
+        self._since_look += frame_time
+        if self._since_look >= LOOK_EVERY and not pygame.mouse.get_pressed()[0]:
+            self._since_look = 0.0
+            self._screen.app.documents.look_at_disk()
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
