@@ -1,9 +1,13 @@
 """Goals in pages: what a level asks is shown, a win comes up as a card, and time gone back takes it away."""
 
+import json
 from pathlib import Path
 
 from sandbox.app.share.playing import page_of
 from sandbox.level.reading.files import read_level
+from sandbox.level.reading.parse import parse_level
+from sandbox.session.outcome import outcome
+from sandbox.session.session import Session
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import opened
@@ -98,3 +102,24 @@ def test_what_hands_may_not_do_has_no_button_no_key_and_no_part_of_the_panel(bro
     tab = opened(browser, tmp_path, page_of(answering(hands={"may": []})))
     tab.key("h")
     assert tab.evaluate(shown) == [] and tab.evaluate("document.getElementById('panel').hidden") is True
+
+
+def test_a_page_counts_each_of_several_things_and_wins_as_the_desktop_does(browser: Browser, tmp_path: Path) -> None:
+    data = {
+        "format": "spring-sandbox/level", "version": 4, "name": "Each",
+        "terrain": [{"id": "floor", "polyline": [[-9, 0], [9, 0]]}], "counters": [{"id": "score", "text": "Score"}],
+        "particles": [{"id": f"ball {k}", "position": [k, 0.5 + k], "radius": 0.1, "group": "balls"} for k in range(3)],
+        "rules": [
+            {"id": "count", "when": {"touches": ["floor"], "each_of": ["balls"]}, "once": True,
+             "then": [{"count": "score"}]},
+            {"id": "won", "when": {"counter": "score", "at_least": 3.0}, "then": [{"win": "All down"}]},
+        ],
+    }  # fmt: skip
+    level = parse_level(json.dumps(data).encode(), "each")
+    session = Session(level)
+    while outcome(level, session.world) is None:
+        session.advance()
+    tab = opened(browser, tmp_path, page_of(level))
+    assert tab.evaluate(UNTIL_END)
+    assert tab.evaluate("page.toy.outcome.tick") == session.tick
+    assert text_of(tab, "#end-card p").startswith("All down")
