@@ -26,6 +26,8 @@ from sandbox.session.session import Session
 SUFFIX = ".solution.replay.gz"
 # Two runs part where one particle of both is so far from itself [m]: a hand's breadth, which a picture shows.
 APART = 0.1
+# A solution has that long after its end [s]: after an edit it may win a little later.
+AFTER = 5.0
 # Ticks of a run that is recorded again, from one pause to the next.
 SLICE_TICKS = 4
 
@@ -83,17 +85,18 @@ class Proof:
         level, replay = self.level, self.replay
         session, rate, name = Session(level, script=replay.script), level.settings.tick_rate, Path(replay.source).name
         fault, found = "", None
-        while not fault and found is None and session.tick < replay.ticks:
+        last = replay.ticks + round(AFTER * rate)
+        while not fault and found is None and session.tick < last:
             fault = _advanced(session)
             found = outcome(level, session.world)
-            self.done = session.tick / max(replay.ticks, 1)
+            self.done = session.tick / last
             yield None
         if found is not None and found.is_won:
             script = tuple(line for line in replay.script if line.tick <= session.tick)
             self.run = run_of(replay.source, level, script, session.tick, state_hash(session.world))
             self.verdict = Verdict(True, f"{outcome_text(found, rate)}, by {name}", found)
             return
-        said = outcome_text(found, rate) if found else f"not won in the {session.tick / rate:.2f} s"
+        said = outcome_text(found, rate) if found else f"not won in the {replay.ticks / rate:.2f} s"
         where = f"at {session.tick / rate:.2f} s: {fault}" if fault else (yield from self._parting(session))
         self.verdict = Verdict(False, f"{said} of {name}; {f'it parts {where}' if where else SAME_RUN}", found)
 

@@ -1,7 +1,8 @@
 """Cards of scenes and recordings: what each is of, when it was kept, what was done in it, and a picture of its end."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.session.replay.reader import read_in_slices
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.scene import SUFFIX, read_about, read_scene
+from sandbox.session.solution import recorded_win, solution_of, solved_text
 
 # Bytes at the end of a scene's file, where the hash of its state is, which a picture goes by.
 END_BYTES = 256
@@ -61,13 +63,8 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
 
 def fill_replay(card: Card, path: Path) -> Iterator[bool]:
     """Read a recording for its card and draw it, a slice at a time."""
-    reading = read_in_slices(path, partial=True)
     try:
-        while True:
-            next(reading)
-            yield True
-    except StopIteration as end:
-        replay: Replay = end.value
+        replay = yield from _read_on(read_in_slices(path, partial=True))
     except ReplayError as error:
         card.show_fault(error.faults[0])
         return
@@ -85,6 +82,30 @@ def fill_replay(card: Card, path: Path) -> Iterator[bool]:
             return
         yield True
         _show_drawn(card, content, replay.level, state)
+
+
+def fill_solved(card: Card, path: Path, level: Level) -> Iterator[bool]:
+    """Read the solution beside a level's file, a slice at a time, and say on its card how it wins the level."""
+    where = solution_of(path)
+    if not where.is_file():
+        return
+    # What is damaged is told where levels are checked.
+    with suppress(ReplayError):
+        replay = yield from _read_on(read_in_slices(where))
+        found = recorded_win(level, replay)
+        if found is not None:
+            card.solved = f"{solved_text(found, level.settings.tick_rate)}."
+
+
+def _read_on(reading: Generator[None, None, Replay]) -> Generator[bool, None, Replay]:
+    """Read a recording in slices of which each says that it goes on."""
+    while True:
+        try:
+            next(reading)
+        except StopIteration as end:
+            replay: Replay = end.value
+            return replay
+        yield True
 
 
 def date_of(path: Path) -> str:
