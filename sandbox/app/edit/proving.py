@@ -7,7 +7,7 @@ from pathlib import Path
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, Colour
-from sandbox.editor.forecast import work_for
+from sandbox.editor.forecast import LARGEST, work_for
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.session.level_edits import runs_alike
@@ -20,6 +20,8 @@ from sandbox.session.solution import Proof, Verdict, recorded_win, solution_of, 
 # Time [s] that a run may take of a frame, and a search, for which the person waits.
 SLICE, LOOKING = 0.006, 0.012
 NONE_YET = "No solution yet: play it, win, and keep the run as its solution."
+
+TOO_LARGE = "The level is too large to be run beside the sheet: sandbox check --prove runs it."
 
 
 class Proving:
@@ -80,8 +82,15 @@ class Proving:
             return sentence(self.verdict.text), DANGER
         return f"{solved_text(self.verdict.outcome, level.settings.tick_rate)}.", ACCENT
 
+    @property
+    def _is_large(self) -> bool:
+        return len(self._screen.scene.position) > LARGEST
+
     def look(self) -> None:
         """Look for a way to win the level, from the solution on that there is."""
+        if self._is_large:
+            self._screen.say(TOO_LARGE)
+            return
         known = self._replay
         self.looking = Looking(self._screen.document.level, *((known.script, known.ticks) if known else ()))
 
@@ -114,6 +123,9 @@ class Proving:
             replay, found = self._replay, recorded_win(level, self._replay)
             if found is not None:
                 self.verdict, self.run = Verdict(True, "", found), replace(replay, level=level)
+                return
+            if self._is_large:
+                self.verdict = Verdict(False, TOO_LARGE)
                 return
             self._proof = Proof(level, replay)
             yield from self._proof.work

@@ -80,7 +80,7 @@ class ChecksPage(SidePage):
         area, top = self._head.area, self._head.top
         # A level that nobody can win has no solution.
         strip = STRIP if screen.document.level.has_goal else 0.0
-        place = pygame.Rect(0, self._ui.px(top), self.list.place.width, self._ui.px(strip))
+        place = pygame.Rect(0, self._ui.px(top), area.view.rect.width - self._ui.px(2), self._ui.px(strip))
         self.solution = SolutionStrip(screen, place, area.content) if strip else None
         self.form = Form(screen, area, top + strip)
 
