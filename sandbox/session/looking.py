@@ -7,7 +7,7 @@ tick. What hands may not do is refused by the session, as it is in the window, a
 import random
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -173,14 +173,6 @@ def played(session: Session, ticks: int, *ways: Iterator[None]) -> Iterator[None
             return
 
 
-@dataclass(frozen=True)
-class _Try:
-    """A run: what was done, and how near it came; larger is nearer."""
-
-    script: tuple[ScriptLine, ...]
-    near: tuple[float, float]
-
-
 class Looking:
     """Looks for a way to win a level, from a script on: `work` goes on a slice, `done` is the part of its time, 0..1.
 
@@ -198,7 +190,8 @@ class Looking:
         rate = level.settings.tick_rate
         self._ticks = round(LONGER * ticks) + 2 * rate if ticks else round(USUAL * rate)
         self._chance = random.Random(0)
-        self._best: list[_Try] = []
+        # What came nearest, with how near that was: larger is nearer.
+        self._best: list[tuple[Place, tuple[ScriptLine, ...]]] = []
         self._aims = _aims(level)
         self.work = self._work(tuple(script))
 
@@ -212,7 +205,7 @@ class Looking:
         while self.found is None and self._used < self.seconds:
             made, until = script, self._ticks
             if self._best and self._chance.random() < 0.8:
-                made = changed(self._chance.choice(self._best).script, self._chance, self.level.settings.tick_rate)
+                made = changed(self._chance.choice(self._best)[1], self._chance, self.level.settings.tick_rate)
             if not made or self._chance.random() < 0.3:
                 until = self._chance.choice((0, self._chance.randint(0, self._ticks)))
             yield from self._try(made, until)
@@ -233,14 +226,13 @@ class Looking:
                 if self._used >= self.seconds:
                     return
         found, world = outcome(self.level, session.world), session.world
-        entries = [entry for entry in session.history.timeline if entry.in_effect]
-        told = script_of(entries, world)
+        told = script_of([entry for entry in session.history.timeline if entry.in_effect], world)
         self._used += time.thread_time() - started
         if found is not None and found.is_won:
             self.outcome = found
             self.found = run_of("the way that was found", self.level, told, session.tick, state_hash(world))
             return
-        self._best = sorted([*self._best, _Try(told, near)], key=lambda each: each.near, reverse=True)[:KEPT]
+        self._best = sorted([*self._best, (near, told)], key=lambda each: each[0], reverse=True)[:KEPT]
 
 
 def _told(person: Person, script: Sequence[ScriptLine], until: int) -> Iterator[None]:

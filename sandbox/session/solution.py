@@ -3,7 +3,7 @@
 import contextlib
 from collections import deque
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from sandbox.session.compare.distance import SameParticles, metres
 from sandbox.session.level_edits import runs_alike
 from sandbox.session.outcome import Outcome, outcome, outcome_text
 from sandbox.session.replay.link import run_of
-from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.reader import read_in_slices, read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
 
@@ -48,7 +48,7 @@ def solution_of(path: Path) -> Path:
 
 def solved_text(found: Outcome, rate: int) -> str:
     """The win of a solution in words; rate: ticks in a second."""
-    return f"Solved in {found.tick / rate:.1f} s with {found.stars} star{'s' * (found.stars > 1)}, by its author"
+    return f"Solved in {found.tick / rate:.1f} s with {found.stars} star{'s' * (found.stars > 1)}, by its author."
 
 
 def recorded_win(level: Level, replay: Replay) -> Outcome | None:
@@ -60,6 +60,20 @@ def recorded_win(level: Level, replay: Replay) -> Outcome | None:
     except ReplayError:
         return None
     return found if found is not None and found.is_won else None
+
+
+def known_solution(level: Level, path: Path) -> Generator[None, None, tuple[Replay, str] | None]:
+    """The solution beside a level's file and its win in words, read a slice at a time; None: none, or it has to be run.
+
+    What is damaged is none: that is told where levels are checked.
+    """
+    with contextlib.suppress(ReplayError):
+        if level.has_goal and solution_of(path).is_file():
+            replay = yield from read_in_slices(solution_of(path))
+            found = recorded_win(level, replay)
+            if found is not None:
+                return replace(replay, level=level), solved_text(found, level.settings.tick_rate)
+    return None
 
 
 class Proof:

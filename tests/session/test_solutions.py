@@ -136,7 +136,7 @@ def test_a_run_that_wins_is_kept_as_its_solution_which_the_end_of_the_file_alone
     kept, data = read_replay(solution_of(level)), read_level(level)
     found = recorded_win(data, kept)
     assert found == Proof(data, kept).whole().outcome
-    assert solved_text(found, 60) == "Solved in 1.3 s with 2 stars, by its author"
+    assert solved_text(found, 60) == "Solved in 1.3 s with 2 stars, by its author."
     # What no run tells apart leaves it, all else has to be run.
     assert recorded_win(replaced(data, name="Another", view=(0, 0, 9, 9)), kept) == found
     assert recorded_win(replaced(data, particles=()), kept) is None

@@ -80,7 +80,7 @@ class Proving:
             return NONE_YET, MUTED
         if not self.verdict.passed or self.verdict.outcome is None:
             return sentence(self.verdict.text), DANGER
-        return f"{solved_text(self.verdict.outcome, level.settings.tick_rate)}.", ACCENT
+        return solved_text(self.verdict.outcome, level.settings.tick_rate), ACCENT
 
     @property
     def _is_large(self) -> bool:

@@ -2,9 +2,9 @@
 
 import time
 from collections.abc import Generator, Iterator
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import pygame
 
@@ -18,12 +18,13 @@ from sandbox.level.document.model import Level
 from sandbox.level.plan.surfaces import terrain_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.replay.reader import read_in_slices
-from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.recording import ReplayError
 from sandbox.session.scene import SUFFIX, read_about, read_scene
-from sandbox.session.solution import recorded_win, solution_of, solved_text
+from sandbox.session.solution import known_solution
 
 # Bytes at the end of a scene's file, where the hash of its state is, which a picture goes by.
 END_BYTES = 256
+Read = TypeVar("Read")
 
 
 def level_of_scene(path: Path) -> str:
@@ -86,25 +87,18 @@ def fill_replay(card: Card, path: Path) -> Iterator[bool]:
 
 def fill_solved(card: Card, path: Path, level: Level) -> Iterator[bool]:
     """Read the solution beside a level's file, a slice at a time, and say on its card how it wins the level."""
-    where = solution_of(path)
-    if not where.is_file():
-        return
-    # What is damaged is told where levels are checked.
-    with suppress(ReplayError):
-        replay = yield from _read_on(read_in_slices(where))
-        found = recorded_win(level, replay)
-        if found is not None:
-            card.solved = f"{solved_text(found, level.settings.tick_rate)}."
+    known = yield from _read_on(known_solution(level, path))
+    card.solved = "" if known is None else known[1]
 
 
-def _read_on(reading: Generator[None, None, Replay]) -> Generator[bool, None, Replay]:
+def _read_on(reading: Generator[None, None, Read]) -> Generator[bool, None, Read]:
     """Read a recording in slices of which each says that it goes on."""
     while True:
         try:
             next(reading)
         except StopIteration as end:
-            replay: Replay = end.value
-            return replay
+            read: Read = end.value
+            return read
         yield True
 
 

@@ -2,8 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
@@ -32,10 +30,10 @@ from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import CommandError
 from sandbox.session.outcome import Outcome, last_checkpoint, outcome, star_words
-from sandbox.session.replay.reader import read_in_slices, read_replay
+from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
-from sandbox.session.solution import recorded_win, solution_of, solved_text
+from sandbox.session.solution import known_solution
 from sandbox.session.tuning import tuning_of
 
 # How long the goal is shown at the start [s], and in how much of that it fades.
@@ -85,9 +83,8 @@ class Game:
         self._went_back: tuple[Playback, int] | None = None
         self._ghost: GhostRun | None = None
         self.has_ghost = self._wants_ghost = False
-        # What is said of the solution beside the level's file, and that itself, once it is read, a slice a frame.
-        self.solved = ""
-        self._solution: Replay | None = None
+        # The solution beside the level's file and its win in words, once it is read, a slice a frame.
+        self._solution: tuple[Replay, str] | None = None
         self._reading = self._read_solution()
         self.begin()
         self.actions: dict[str, Callable[[], object]] = {
@@ -142,26 +139,26 @@ class Game:
         return screen.source or (shipped_folder("levels") / name if name else None)
 
     def _read_solution(self) -> Iterator[None]:
-        """Read the solution beside the level's file, and take it where it wins the level as it is played."""
-        level, path = self._playback.level, self._file
-        if not (self.is_on and self._has_rules) or path is None or not solution_of(path).is_file():
-            return
-        # What is damaged is told where levels are checked.
-        with suppress(ReplayError):
-            replay = yield from read_in_slices(solution_of(path))
-            found = recorded_win(level, replay)
-            if found is not None:
-                self._solution = replace(replay, level=level)
-                self.solved = f"{solved_text(found, level.settings.tick_rate)}."
+        """Read the solution beside the level's file, a slice at a time."""
+        path = self._file
+        if self.is_on and path is not None:
+            self._solution = yield from known_solution(self._playback.level, path)
+
+    @property
+    def solved(self) -> str:
+        """The win of the solution in words; "" while none is known."""
+        return "" if self._solution is None else self._solution[1]
 
     def _watch_solution(self) -> None:
         """Watch the solution, where there is one."""
         if self._solution is None:
             self._screen.say(NO_SOLUTION)
-        elif self._screen.of_document:
-            self._app.documents.play(watched=self._solution)
+            return
+        run, _ = self._solution
+        if self._screen.of_document:
+            self._app.documents.play(watched=run)
         else:
-            self._app.start(Playback(self._solution.level, self._solution), self._screen.source)
+            self._app.start(Playback(run.level, run), self._screen.source)
 
     def _keep_solution(self) -> None:
         """Keep the run so far as the solution of the level's file."""

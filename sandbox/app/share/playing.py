@@ -46,10 +46,9 @@ from sandbox.session.commands.records import ScriptLine, to_record
 from sandbox.session.outcome import star_words
 from sandbox.session.replay.format import header, seal
 from sandbox.session.replay.link import level_record
-from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.session import Session
-from sandbox.session.solution import recorded_win, solution_of, solved_text
+from sandbox.session.solution import known_solution
 from sandbox.tools.drawing import MATERIALS
 from sandbox.tools.dropping import COLOURS, PARTS, USUAL_RATE, at_rate, in_pace
 from sandbox.tools.dropping import DIGITS as PART_DIGITS
@@ -149,16 +148,11 @@ def _goals(level: Level, world: World) -> dict[str, Any]:
 
 
 def _solved(level: Level, file: Path) -> Generator[float, None, dict[str, str] | None]:
-    """The solution beside a level's file, in words and as the fragment of a link; None: none that wins it."""
-    try:
-        replay = read_replay(solution_of(file))
-        found = recorded_win(level, replay)
-        link = None if found is None else (yield from link_to(replace(replay, level=level), "", 0))
-    except ReplayError:
-        return None
-    if found is None or link is None:
-        return None
-    return {"text": f"{solved_text(found, level.settings.tick_rate)}.", "fragment": link}
+    """The solution beside a level's file, in words and as the fragment of a link; None: none wins, or too long."""
+    known = at_once(known_solution(level, file))
+    with contextlib.suppress(ReplayError):
+        return known and {"text": known[1], "fragment": (yield from link_to(known[0], "", 0))}
+    return None
 
 
 def _check(check: CheckDef, world: World) -> dict[str, Any]:
