@@ -10,14 +10,16 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from sandbox.app.base.loop import at_once
+from sandbox.app.share.page import so_far
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.query import grip_radius
-from sandbox.session.checking import solution_of
 from sandbox.session.commands import AddBody
 from sandbox.session.commands.records import from_record
-from sandbox.session.outcome import MOST_STARS, outcome, outcome_text
+from sandbox.session.outcome import MOST_STARS, outcome
 from sandbox.session.session import Session
+from sandbox.session.solution import keep_solution
 from sandbox.tools.dropping import PARTS
 
 # Records of commands, each with its time [s], that are one gesture.
@@ -159,18 +161,13 @@ def rule_keys_of(record: dict[str, Any], session: Session) -> list[dict[str, Any
 def record(path: Path, gestures: list[Gesture]) -> str:
     """Record a level's solution beside its file; how it ended, in words. Raises ValueError if it does not win."""
     session = Session(load_level(path.stem))
-    part = path.with_name("part.replay.gz")
-    session.record_to(part)
     play(session, gestures)
-    session.stop_recording()
-    found = outcome(session.level, session.world)
     # That a spring breaks is no fault.
     faults = [line for line in session.messages if not line.endswith(" broke")]
-    if faults or found is None or not found.is_won:
-        part.unlink()
-        raise ValueError(f"{path.stem}: not won: {[found and found.text, *faults]}")
-    part.replace(solution_of(path))
-    return outcome_text(found, session.level.settings.tick_rate)
+    kept = None if faults else at_once(keep_solution(path, so_far(session).script, session.tick))
+    if kept is None or not kept.passed:
+        raise ValueError(f"{path.stem}: not won: {[*faults, kept and kept.text]}")
+    return kept.text
 
 
 def seeds_of_flips() -> None:

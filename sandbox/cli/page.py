@@ -20,13 +20,15 @@ def page(options: PageOptions) -> int:
     """Write the page, and tell how large it is. Raises Refused."""
     from sandbox.app.share.playing import page_of
     from sandbox.level.format.writing import write_file
+    from sandbox.level.reading.files import level_path
     from sandbox.session.commands import CommandError
 
     if options.output.suffix.lower() != PAGE:
         raise Refused(f"{options.output}: end the name in {PAGE}")
     level, replay = level_or_replay(options.level)
     try:
-        text = page_of(level, replay.script if replay else (), replay.ticks if replay else None)
+        file = None if replay else Path(level_path(options.level))
+        text = page_of(level, replay.script if replay else (), replay.ticks if replay else None, file)
     except CommandError as error:
         raise Refused(*(f"{options.level}: {fault}" for fault in error.faults)) from None
     write_file(options.output, text.encode())

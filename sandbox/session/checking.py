@@ -16,60 +16,18 @@ from sandbox.physics.analysis.stability import report
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from sandbox.session.check_run import checks_as_they_end
-from sandbox.session.commands import CommandError
 from sandbox.session.compare.rollback import roll_back_level
 from sandbox.session.golden import SUFFIX, GoldenError, differences, read_golden
-from sandbox.session.outcome import Outcome, outcome, outcome_data, outcome_text
+from sandbox.session.looking import SECONDS, Looking
+from sandbox.session.outcome import outcome_data
 from sandbox.session.probe import finite
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.recording import Replay, ReplayError
-from sandbox.session.session import Session
+from sandbox.session.replay.recording import ReplayError
+from sandbox.session.solution import Proof, Verdict, keep_solution, solution_of, try_goal
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
-SOLUTION_SUFFIX = ".solution.replay.gz"
 # Said of a level with a goal that lets hands do everything.
 OPEN = "may do everything, so whoever pauses puts things where they win: say in hands what the level is about"
-
-
-@dataclass(frozen=True)
-class GoalResult:
-    """The result of a level's goal: its line, and whether it passed; without a solution it does."""
-
-    passed: bool
-    text: str
-    outcome: Outcome | None
-
-
-def solution_of(path: Path) -> Path:
-    """Where the solution of a level's file is kept."""
-    return path.with_name(f"{path.name.removesuffix('.json')}{SOLUTION_SUFFIX}")
-
-
-def play_out(replay: Replay, level: Level) -> Outcome | None:
-    """The outcome of a level by a recording's commands, until it is won or lost; None: neither. Raises CommandError."""
-    session = Session(level, script=replay.script)
-    while outcome(level, session.world) is None and session.tick < replay.ticks:
-        session.advance()
-    return outcome(level, session.world)
-
-
-def try_goal(level: Level, path: Path) -> GoalResult | None:
-    """Run a level by the solution beside its file, until it is won or lost; None for a level without a goal."""
-    if not level.has_goal:
-        return None
-    solution = solution_of(path)
-    if not solution.exists():
-        return GoalResult(True, f"not tried: there is no {solution.name}", None)
-    try:
-        replay = read_replay(solution)
-        found = play_out(replay, level)
-    except (ReplayError, CommandError) as error:
-        return GoalResult(False, f"FAILS: {solution.name}: {error.faults[0]}", None)
-    if found is None:
-        seconds = replay.ticks / level.settings.tick_rate
-        return GoalResult(False, f"FAILS: not won in the {seconds:.2f} s of {solution.name}", None)
-    said = outcome_text(found, level.settings.tick_rate)
-    return GoalResult(found.is_won, f"{'' if found.is_won else 'FAILS: '}{said}, by {solution.name}", found)
 
 
 @dataclass(frozen=True)
@@ -130,6 +88,45 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     if again is not None:
         data["rollback"] = {"passed": again.found is None, "ticks": again.ticks, "text": str(again)}
     return LevelReport(finite(data), lines, passed=passed)
+
+
+def proved_level(name: str, look: bool = False) -> Generator[float, None, LevelReport | None]:
+    """Run the solution beside a level, a slice at a time: the part that is done, 0..1; None: no rule wins the level.
+
+    look: where it does not win, look for a way that does, from it on, and keep that in its place. Raises OSError.
+    """
+    try:
+        path = Path(level_path(name))
+        level = read_level(path)
+    except LevelError as error:
+        return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
+    if not level.has_goal:
+        return None
+    found, lines, replay, where = Verdict(False, "has no solution"), [], None, solution_of(path)
+    if where.exists():
+        try:
+            replay = read_replay(where)
+            proof = Proof(level, replay)
+            for _ in proof.work:
+                yield proof.done
+            found = proof.verdict or found
+        except ReplayError as error:
+            found = Verdict(False, f"{where.name}: {error.faults[0]}")
+    lines.append(f"{name}: {found.text}")
+    if look and not found.passed:
+        looking = Looking(level, *((replay.script, replay.ticks) if replay else ()))
+        for _ in looking.work:
+            yield looking.done
+        if looking.found is not None:
+            found = yield from keep_solution(path, looking.found.script, looking.found.ticks)
+            lines.append(f"  found      {found.text}, after {looking.runs:,} runs")
+        else:
+            lines.append(f"  found      no way in {looking.runs:,} runs, {SECONDS:g} s of the processor")
+    data = {
+        "file": name, "result": "won" if found.passed else "failed", "level": level.name, "text": found.text,
+        "outcome": outcome_data(found.outcome, level.settings.tick_rate),
+    }  # fmt: skip
+    return LevelReport(finite(data), tuple(lines), passed=found.passed)
 
 
 def _beginning(level: Level, world: World) -> Iterator[str]:

@@ -18,6 +18,12 @@ MOST_LISTED = 10
 SILENT = ("name", "description", "goal", "author", "licence", "tags", "view", "look", "extras", "checks")
 
 
+def runs_alike(before: Level, after: Level) -> bool:
+    """Whether two levels differ in nothing that a run could tell."""
+    names = [name for name in Level.model_fields if name not in (*SILENT, "schema_link", "format")]
+    return before is after or all(getattr(before, name) == getattr(after, name) for name in names)
+
+
 @dataclass(frozen=True)
 class Edit:
     """A value of a level's data that is another: place by place from the top, names of parts where they have ids.

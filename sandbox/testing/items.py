@@ -131,7 +131,7 @@ class GoalItem(ReportedItem):
 
     def runtest(self) -> None:
         """Run the solution. Raises Failed."""
-        from sandbox.session.checking import try_goal
+        from sandbox.session.solution import try_goal
 
         assert isinstance(self.parent, LevelTests)
         result = try_goal(self.parent.level(), self.path)

@@ -14,8 +14,6 @@ import pytest
 from sandbox.level.document.model import Level
 from sandbox.level.format.writing import unfinished
 from sandbox.level.reading.files import LevelError, file_of, shipped_levels
-from sandbox.session.checking import play_out
-from sandbox.session.commands import CommandError
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
 from sandbox.session.replay.nearest_level import NoLevelError, known_level, level_among, level_in, nearest
 from sandbox.session.replay.reader import read_replay
@@ -29,6 +27,7 @@ from sandbox.session.replay.rerecord import (
     record_again,
     with_settings,
 )
+from sandbox.session.solution import Proof
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
 from sandbox.testing.files import SOLUTION, Failed, asked_renames, level_files, levels_around
 
@@ -130,11 +129,8 @@ class _Golden:
         """Whether it is the solution of a level that its commands won, and now do not."""
         if self.level is None or not self.path.name.endswith(SOLUTION):
             return False
-        try:
-            before, after = play_out(self.recorded, self.recorded.level), play_out(self.replay, self.level)
-        except CommandError:
-            return False
-        return before is not None and before.is_won and not (after is not None and after.is_won)
+        was_won = Proof(self.recorded.level, self.recorded).whole().passed
+        return was_won and not Proof(self.level, self.replay).whole().passed
 
     def move_lines(self) -> list[str]:
         """Lines that say which title or file of the level has changed."""

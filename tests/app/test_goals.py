@@ -414,7 +414,7 @@ def test_a_level_that_is_edited_keeps_no_best_run(open_app):
     driver.app.act("play")
     driver.frames(2)
     play_to_the_end(driver)
-    assert list(game(driver).card.buttons) == ["Again", "Keep watching"]
+    assert list(game(driver).card.buttons) == ["Again", "Keep as solution", "Keep watching"]
     assert best_result(driver.playback.level) is None
 
 

@@ -16,6 +16,7 @@ from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.reading.files import parse_level, read_level
+from sandbox.session.level_edits import runs_alike
 from tests.app.conftest import small_level
 
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
@@ -569,7 +570,6 @@ def test_results_go_with_every_part_of_the_level_that_runs():
     said = {
         "schema_link",
         "format",
-        "version",
         "name",
         "description",
         "goal",
@@ -577,13 +577,12 @@ def test_results_go_with_every_part_of_the_level_that_runs():
         "licence",
         "tags",
         "view",
-        "hands",
         "checks",
         "look",
         "extras",
     }
     changed = {part: replaced(before, **{part: object()}) for part in Level.model_fields}
-    assert {part for part, level in changed.items() if trial.holds_for(level)} == said
+    assert {part for part, level in changed.items() if runs_alike(trial.level, level)} == said
 
 
 def test_a_click_in_the_history_goes_there_and_undone_steps_stay(driver):

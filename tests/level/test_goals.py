@@ -4,9 +4,9 @@ import pytest
 
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics.jit import COMPILED
-from sandbox.session.checking import solution_of, try_goal
 from sandbox.session.outcome import outcome
 from sandbox.session.session import Session
+from sandbox.session.solution import solution_of, try_goal
 from tests.solutions import SOLUTIONS
 from tests.support.wholes import some_and_whole
 

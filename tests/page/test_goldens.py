@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.level.reading.files import shipped_levels
-from sandbox.session.checking import solution_of
+from sandbox.session.solution import solution_of
 from tests.page.browser import Browser
 from tests.page.goldens import played
 from tests.support.wholes import some_and_whole

@@ -8,7 +8,7 @@ import pytest
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.page.start import is_done_by_pages
 from sandbox.replay import read_replay, verify
-from sandbox.session.checking import solution_of
+from sandbox.session.solution import solution_of
 from tests.page.browser import Browser
 from tests.page.deeds import ByFinger, ByMouse, Player
 from tests.page.levels import level_page

@@ -1,16 +1,23 @@
 """Solutions: what wins a level is kept beside it, run again, and told by the shell and by pytest."""
 
 import json
+from pathlib import Path
 
 import pytest
 
+from sandbox.app.base.loop import at_once
 from sandbox.cli import main
 from sandbox.level.document.canonical import level_text
-from sandbox.session.checking import solution_of, try_goal
+from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import read_level
+from sandbox.physics.jit import COMPILED
+from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
+from sandbox.session.solution import Proof, keep_solution, recorded_win, solution_of, solved_text, try_goal
 from tests.support import rules_level
 from tests.testing.conftest import LOADED
 
+ROOT = Path(__file__).resolve().parents[2]
 pytest_plugins = ["pytester"]
 
 
@@ -112,3 +119,73 @@ def test_an_update_does_not_put_a_run_that_wins_no_more_in_the_place_of_a_soluti
     (pytester.path / "answering.json").write_text(json.dumps(data), encoding="utf-8")
     pytester.runpytest_inprocess(*LOADED, "--replay-update", solution.name).assert_outcomes(passed=1)
     assert solution.read_bytes() != before
+
+
+def test_a_run_that_does_not_win_is_kept_neither_beside_nor_in_the_place_of_a_solution(level):
+    before = solution_of(level).read_bytes()
+    verdict = at_once(keep_solution(level, (), 20))
+    assert not verdict.passed and "does not win" in verdict.text
+    assert solution_of(level).read_bytes() == before
+    assert sorted(path.name for path in level.parent.iterdir()) == [level.name, solution_of(level).name]
+
+
+def test_a_run_that_wins_is_kept_as_its_solution_which_the_end_of_the_file_alone_says(level):
+    replay = read_replay(solution_of(level))
+    solution_of(level).unlink()
+    assert at_once(keep_solution(level, replay.script, replay.ticks)).passed
+    kept, data = read_replay(solution_of(level)), read_level(level)
+    found = recorded_win(data, kept)
+    assert found == Proof(data, kept).whole().outcome
+    assert solved_text(found, 60) == "Solved in 1.3 s with 2 stars, by its author."
+    # What no run tells apart leaves it, all else has to be run.
+    assert recorded_win(replaced(data, name="Another", view=(0, 0, 9, 9)), kept) == found
+    assert recorded_win(replaced(data, particles=()), kept) is None
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (lambda data: data["zones"][0].update(box=[3, 0, 4, 1]), "it parts at 1.28 s: the rule goal fired there"),
+        (lambda data: data["particles"][0].update(position=[3, 4]), "it parts at 0.00 s: ball is 3 m from where"),
+        (lambda data: data["rules"].pop(5), "it parts at 0.50 s: there is no key that"),
+        (lambda data: data["settings"].update(gravity=[0, 0]), "it parts at 0.15 s: rope."),
+    ],
+)
+def test_where_a_solution_parts_is_said(level, edit, said):
+    data = json.loads(level.read_text(encoding="utf-8"))
+    edit(data)
+    level.write_text(json.dumps(data), encoding="utf-8")
+    verdict = Proof(read_level(level), read_replay(solution_of(level))).whole()
+    assert not verdict.passed and said in verdict.text and "\n" not in verdict.text
+
+
+def test_levels_and_folders_are_proved_in_the_shell(level, told):
+    plain = level.with_name("plain.json")
+    plain.write_text(level_text(rules_level.answering(rules=[])), encoding="utf-8")
+    code, text = told("check", "--prove", str(level.parent))
+    assert code == 0 and text.endswith(
+        "won at 1.28 s with 2 stars, by answering.solution.replay.gz\n1 of 1 won by their solutions\n"
+    )
+    assert "plain" not in text
+    harder(level)
+    code, text = told("check", "--prove", str(level))
+    assert code == 1 and "it parts at 1.28 s" in text and "0 of 1" in text
+    (data,) = map(json.loads, told("check", "--prove", "--json", str(level))[1].splitlines())
+    assert data["result"] == "failed" and "it parts at" in data["text"]
+    solution_of(level).write_bytes(b"no recording")
+    assert told("check", "--prove", str(level))[0] == 1
+    assert told("check", "--prove", str(level.parent / "none.json"))[0] == 2
+    assert told("check", "--look", str(level))[0] == 2
+
+
+def test_a_way_that_is_found_in_the_shell_is_kept_in_the_place_of_what_wins_no_more(level, told):
+    solution_of(level).unlink()
+    code, text = told("check", "--prove", "--look", str(level))
+    assert code == 0 and "has no solution" in text and "found      won at 1.28 s" in text
+    assert told("check", "--prove", str(level))[0] == 0
+
+
+@pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")
+def test_all_shipped_solutions_win(told):
+    code, text = told("check", "--prove", str(ROOT / "levels"))
+    assert code == 0 and text.endswith("13 of 13 won by their solutions\n")

@@ -1,68 +1,23 @@
 """Cheats: hands that try to win a level in ways it is not about, and hands that do anything; by commands alone.
 
-A trick is a generator: what stands between two of its yields is done while time stands, and each yield is a tick.
-What hands may not do is refused by the session, as it is in the window, and changes nothing.
+A trick is a way of playing, as `sandbox.session.looking` has it.
 """
 
-import random
 from collections.abc import Callable, Iterator
 from itertools import chain, count
 from typing import Any
 
 import numpy as np
 
-from sandbox.level.plan.actuators import driving_keys
-from sandbox.physics.analysis.query import grip_radius, shown_particles, shown_springs
+from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.session.compare.rollback import RandomHands
-from sandbox.session.outcome import outcome
+from sandbox.session.looking import Person, Place, carrying, keys, played, waiting
 from sandbox.session.session import Session
 from sandbox.tools.dropping import PARTS
 
-Place = tuple[float, float]
-# What a key does until it is let go [ticks], and how often one is pressed.
-HELD, KEYS_A_TICK = (10, 400), 0.02
 
-
-class Cheat:
-    """A person at a session: what is chosen at random, and commands by the session's own check."""
-
-    def __init__(self, session: Session, seed: str) -> None:
-        self.session, self.world, self.level = session, session.world, session.level
-        self.chance = random.Random(seed)
-        left, bottom, right, top = self.level.view or (-5.0, -5.0, 5.0, 5.0)
-        self.view, self.width, self.height = (left, bottom), right - left, top - bottom
-
-    def do(self, kind: str, **fields: Any) -> bool:
-        """Give a command of its own; whether it was carried out."""
-        return self.session.attempt({"type": kind, **fields}, self.session.new_gesture())
-
-    def goal(self) -> Place:
-        """A place in a zone of the level, or else anywhere in the picture."""
-        boxes = [zone.box for zone in self.level.zones if zone.box is not None]
-        left, bottom, right, top = self.chance.choice(boxes or [(*self.view, *self.corner)])
-        low, high = np.maximum((left, bottom), self.view), np.minimum((right, top), self.corner)
-        x, y = (self.chance.uniform(*sorted(ends)) for ends in zip(low.tolist(), high.tolist(), strict=True))
-        return x, y
-
-    @property
-    def corner(self) -> Place:
-        """The upper right corner of the picture [m]."""
-        return self.view[0] + self.width, self.view[1] + self.height
-
-    def thing(self) -> str:
-        """A particle that moves, of what there are few of as likely as of what there are many of."""
-        slots = np.flatnonzero(shown_particles(self.world) & (self.world.inverse_mass > 0.0)).tolist()
-        names = [self.world.particle_names[slot] for slot in slots]
-        owners = sorted({name.partition(".")[0] for name in names})
-        if not names:
-            return "nothing"
-        owner = self.chance.choice(owners)
-        return self.chance.choice([name for name in names if name.partition(".")[0] == owner])
-
-    def place(self, name: str) -> Place:
-        """Where a particle is."""
-        x, y = self.world.position[self.world.particle_slot(name)].tolist()
-        return x, y
+class Cheat(Person):
+    """A person who tries anything."""
 
     def part(self, place: Place, size: float, wide: float = 1.0) -> dict[str, Any]:
         """A box of the strip of parts, at a place, so large [m]."""
@@ -80,29 +35,6 @@ def paused_moves(cheat: Cheat) -> Iterator[None]:
             here = cheat.place(name)
             cheat.do("move_body", particle=name, by=[x - here[0], y - here[1]], at_rest=True)
             cheat.do("free", particle=name)
-
-
-def carrying(cheat: Cheat) -> Iterator[None]:
-    """Carry a thing over whatever is in the way to where it wins, slowly or in a jerk, and let it down there."""
-    name = cheat.thing()
-    if name == "nothing":
-        return
-    high, goal = cheat.corner[1] - cheat.chance.uniform(0.0, 0.5) * cheat.height, cheat.goal()
-    here, ticks = cheat.place(name), cheat.chance.choice((4, 20, 60))
-    reach = grip_radius(cheat.world, cheat.world.particle_slot(name))
-    gesture = cheat.session.new_gesture()
-    start = {"type": "grab", "grab": 0, "particle": name, "target": here, "strength": 300.0, "radius": reach}
-    if not cheat.session.attempt(start, gesture):
-        return
-    for end in ((here[0], high), (goal[0], high), goal):
-        for share in np.arange(1, ticks + 1) / ticks:
-            target = [a + float(share) * (b - a) for a, b in zip(here, end, strict=True)]
-            cheat.session.attempt({"type": "move_grab", "grab": 0, "target": target}, gesture)
-            yield
-        here = end
-    for _ in range(cheat.chance.choice((0, 60, 300))):
-        yield
-    cheat.session.attempt({"type": "release", "grab": 0}, gesture)
 
 
 def cutting(cheat: Cheat) -> Iterator[None]:
@@ -202,12 +134,6 @@ def undo_games(cheat: Cheat) -> Iterator[None]:
         yield
 
 
-def waiting(cheat: Cheat, most: int) -> Iterator[None]:
-    """Let some ticks pass."""
-    for _ in range(cheat.chance.randint(0, most)):
-        yield
-
-
 TRICKS: tuple[Callable[[Cheat], Iterator[None]], ...] = (
     paused_moves, carrying, cutting, removing, huge_part, parts_on_the_goal, other_air, freezing, tuning, pushing,
     undo_games,
@@ -229,36 +155,7 @@ def random_play(cheat: Cheat, number: int) -> Iterator[None]:
         yield
 
 
-def keys(cheat: Cheat) -> Iterator[None]:
-    """Press the level's keys at random, and hold each for a while."""
-    driven, asked = driving_keys(cheat.level), cheat.world.rule_keys
-    names, held = sorted({*driven, *asked}), dict[str, int]()
-    while True:
-        for key in names:
-            tick = cheat.session.tick
-            ends = held.get(key, tick + 1) <= tick
-            if ends or (key not in held and cheat.chance.random() < KEYS_A_TICK):
-                _press(cheat, key, not ends)
-                held[key] = tick + cheat.chance.randint(*HELD)
-            if ends:
-                del held[key]
-        yield
-
-
-def _press(cheat: Cheat, key: str, down: bool) -> None:
-    gesture, parts = cheat.session.new_gesture(), cheat.world.actuators.names
-    for part, value in driving_keys(cheat.level).get(key, []):
-        record = {"type": "set_drive", "part": parts[part], "value": value if down else 0.0}
-        cheat.session.attempt(record, gesture)
-    if key in cheat.world.rule_keys:
-        cheat.session.attempt({"type": "hold_key", "key": key, "down": down}, gesture)
-
-
 def cheated(session: Session, way: Callable[[Cheat, int], Iterator[None]], number: int, ticks: int) -> Iterator[None]:
     """Play a level in a way with a seed until it is won or lost, or so long; each yield is after a tick."""
     cheat = Cheat(session, f"{way.__name__} {number}")
-    for _, _ in zip(way(cheat, number), keys(cheat), strict=False):
-        session.advance()
-        yield
-        if session.tick >= ticks or outcome(session.level, session.world) is not None:
-            return
+    yield from played(session, ticks, way(cheat, number), keys(cheat))

@@ -190,6 +190,7 @@ SHORTCUTS = (
     Shortcut("as_it_was", ("Ctrl+Shift+R",), "Back to the beginning, as the level was", "Time", "play"),
     Shortcut("card", ("Shift+E",), "How it ended: the card of a win or a loss", "View", "play"),
     Shortcut("ghost", ("Shift+G",), "Ghost of your best run, in levels with a goal", "View", "play"),
+    Shortcut("solution", ("Shift+W",), "Watch how its author solved it", "View", "play"),
     Shortcut("", ("Wheel",), "Zoom about the pointer", "View"),
     Shortcut("", ("Middle drag", "Space+drag"), "Pan", "View"),
     Shortcut("zoom_in", ("+", "="), "Zoom in", "View"),

@@ -21,6 +21,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import load_level, shipped_levels
+from sandbox.session.replay.recording import Replay
 
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
@@ -419,15 +420,32 @@ class DocumentActions:
 
     # Playing.
 
-    def play(self) -> None:
-        """Play the document from its beginning."""
+    def keep_solution(self, run: Replay) -> None:
+        """Keep a run as the solution of the level's file, which is written first where it is not saved."""
+        editor = self.editor
+        if editor is None:
+            return
+
+        def keep() -> None:
+            if editor.level_file.path is not None:
+                self.app.best.keep_solution(editor.level_file.path, run, self.app.say)
+
+        if editor.level_file.path is not None and editor.history.is_saved:
+            keep()
+        else:
+            self._save(keep)
+
+    def play(self, watched: Replay | None = None, ghost: Replay | None = None) -> None:
+        """Play the document from its beginning; watched: as this run does it; ghost: beside it."""
         editor = self.editor
         if editor is None:
             return
         editor.settle()
         # What is being typed is played, too.
         self.app.ui.blur()
-        screen = self.app.start_document(Playback(editor.document.level))
+        screen = self.app.start_document(Playback(editor.document.level, watched))
+        if ghost is not None:
+            screen.game.run_along(ghost)
         screen.camera.show_as(editor.camera)
         box = editor.whole_box
         if box is not None and editor.camera.shows(box):

@@ -551,6 +551,8 @@ class EditScreen:
             parts.append((f"{errors} {'error' if errors == 1 else 'errors'}", DANGER))
         if warnings:
             parts.append((f"{warnings} {'warning' if warnings == 1 else 'warnings'}", WARNING))
+        if self.watch.proving.text[0]:
+            parts.append(self.watch.proving.text)
         if selection:
             parts.append((f"{len(selection):,} selected", MUTED))
         if self.visibility.hidden:

@@ -8,6 +8,7 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.contracts.application import Editing
+from sandbox.app.edit.proving import Proving
 from sandbox.app.panel.softness_reading import MEASURING, SoftnessReading
 from sandbox.app.run.playback import Playback
 from sandbox.editor.edits.bake import begin_at_rest
@@ -46,6 +47,7 @@ class Watch:
         self._commands: tuple[TimedCommands, int] | None = None
         # Values of a number that are tried.
         self.range_trial: RangeTrial | None = None
+        self.proving = Proving(screen)
         # How soft play says that a body is; None: not asked for of the level as it is now, or it cannot be played.
         self._softness: SoftnessReading | None = None
         self._said = ""
@@ -164,6 +166,7 @@ class Watch:
             is_waiting
             or is_firing
             or self._lint is not None
+            or self.proving.is_at_work
             or (self._softness is not None and self._softness.is_measuring)
             or is_drawing
             or (forecast is not None and not self._is_reported)
@@ -186,6 +189,7 @@ class Watch:
         if self.range_trial is not None and not self.range_trial.is_done:
             self.range_trial.advance(TRYING)
         before, self._since = self._since, self._since + frame_time
+        self.proving.update(self._since >= PATIENCE)
         if self._since < PATIENCE:
             return
         if before < PATIENCE:

@@ -38,7 +38,7 @@ class Card(Pressable):
     """One thing to open; line: what to do with it, text: all that is said of it, tags: what else it is found by.
 
     is_small: a row with the picture at its left and the name beside it. badge: a word over the picture. won: the stars
-    and the time of the best run, over it too.
+    and the time of the best run, over it too. solved: what is said of its solution.
     """
 
     is_lit = True
@@ -49,7 +49,7 @@ class Card(Pressable):
     ) -> None:  # fmt: skip
         super().__init__(ui, rect, container)
         self.name, self.text, self.action, self.is_small = name, text, action, is_small
-        self.line = self.badge = ""
+        self.line = self.badge = self.solved = ""
         self.won: tuple[int, str] | None = None
         self.tags: tuple[str, ...] = ()
         self.picture: pygame.Surface | None = None
@@ -153,7 +153,10 @@ class Card(Pressable):
     def _all_lines(self, width: int) -> list[tuple[str, Colour]]:
         """All lines below the name, for a card with room for them."""
         inside, font = width - 2 * self.ui.px(PADDING), self.ui.font(LINE_SIZE)
-        texts = ((self.line, TEXT), (self.text, DANGER if self.broken else MUTED), (", ".join(self.tags), ACCENT))
+        texts = (
+            (self.line, TEXT), (self.text, DANGER if self.broken else MUTED), (self.solved, TEXT),
+            (", ".join(self.tags), ACCENT),
+        )  # fmt: skip
         return [(line, colour) for text, colour in texts if text for line in wrapped(text, font, inside, MOST_LINES)]
 
     def _paint_picture(self, card: pygame.Surface, place: pygame.Rect) -> None:

@@ -1,9 +1,10 @@
 """Cards of scenes and recordings: what each is of, when it was kept, what was done in it, and a picture of its end."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import pygame
 
@@ -17,11 +18,13 @@ from sandbox.level.document.model import Level
 from sandbox.level.plan.surfaces import terrain_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.replay.reader import read_in_slices
-from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.recording import ReplayError
 from sandbox.session.scene import SUFFIX, read_about, read_scene
+from sandbox.session.solution import known_solution
 
 # Bytes at the end of a scene's file, where the hash of its state is, which a picture goes by.
 END_BYTES = 256
+Read = TypeVar("Read")
 
 
 def level_of_scene(path: Path) -> str:
@@ -61,13 +64,8 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
 
 def fill_replay(card: Card, path: Path) -> Iterator[bool]:
     """Read a recording for its card and draw it, a slice at a time."""
-    reading = read_in_slices(path, partial=True)
     try:
-        while True:
-            next(reading)
-            yield True
-    except StopIteration as end:
-        replay: Replay = end.value
+        replay = yield from _read_on(read_in_slices(path, partial=True))
     except ReplayError as error:
         card.show_fault(error.faults[0])
         return
@@ -85,6 +83,23 @@ def fill_replay(card: Card, path: Path) -> Iterator[bool]:
             return
         yield True
         _show_drawn(card, content, replay.level, state)
+
+
+def fill_solved(card: Card, path: Path, level: Level) -> Iterator[bool]:
+    """Read the solution beside a level's file, a slice at a time, and say on its card how it wins the level."""
+    known = yield from _read_on(known_solution(level, path))
+    card.solved = "" if known is None else known[1]
+
+
+def _read_on(reading: Generator[None, None, Read]) -> Generator[bool, None, Read]:
+    """Read a recording in slices of which each says that it goes on."""
+    while True:
+        try:
+            next(reading)
+        except StopIteration as end:
+            read: Read = end.value
+            return read
+        yield True
 
 
 def date_of(path: Path) -> str:

@@ -25,7 +25,7 @@ from sandbox.app.draw.picture_cache import (
     picture_key,
 )
 from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, Preview, draw_shadow
-from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene, level_of_scene
+from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene, fill_solved, level_of_scene
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
 from sandbox.app.play.score import time_text
 from sandbox.app.widgets.button import Button
@@ -285,6 +285,8 @@ class Gallery:
         result = best_result(level) if level.rules and not card.is_small else None
         if result is not None:
             card.show_won(result.stars, time_text(result.seconds))
+        if level.rules and not card.is_small:
+            yield from fill_solved(card, path, level)
         if picture is not None:
             return
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)

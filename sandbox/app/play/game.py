@@ -1,7 +1,7 @@
 """Game: the goal of a level while it is played: score, endings, checkpoints, the best run and its ghost."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -18,11 +18,14 @@ from sandbox.app.play.result_card import Ending, ResultCard, star_times
 from sandbox.app.play.score import CHIP, TOP, ScoreView, chips_of
 from sandbox.app.play.stage import Stage
 from sandbox.app.run.playback import Playback
+from sandbox.app.share.page import so_far
 from sandbox.app.sound.waves import STAR_RISE, STAR_STEP
 from sandbox.app.widgets.dialogs import Choice
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.forecast import work_for
 from sandbox.editor.storage.best_runs import Result, best_recording, best_result
 from sandbox.level.document.model import ZoneDef
+from sandbox.level.reading.files import file_of, shipped_folder
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import CommandError
@@ -30,6 +33,7 @@ from sandbox.session.outcome import Outcome, last_checkpoint, outcome, star_word
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
+from sandbox.session.solution import known_solution
 from sandbox.session.tuning import tuning_of
 
 # How long the goal is shown at the start [s], and in how much of that it fades.
@@ -42,6 +46,7 @@ CHECKPOINT = "Checkpoint. {} comes back to here."
 BACK_AT_CHECKPOINT = "Back at the checkpoint. {} once more goes to the beginning."
 NO_ZONES = "This level has no zones."
 NOT_ENDED = "This run has not ended yet."
+NO_SOLUTION = "There is no solution beside this level."
 NO_GHOST = "There is no best run yet: win this level first, then its ghost can run along."
 
 
@@ -78,9 +83,13 @@ class Game:
         self._went_back: tuple[Playback, int] | None = None
         self._ghost: GhostRun | None = None
         self.has_ghost = self._wants_ghost = False
+        # The solution beside the level's file and its win in words, once it is read, a slice a frame.
+        self._solution: tuple[Replay, str] | None = None
+        self._reading = self._read_solution()
         self.begin()
         self.actions: dict[str, Callable[[], object]] = {
             "restart": screen.restart, "as_it_was": lambda: screen.restart(as_it_was=True), "card": self.show_card,
+            "solution": self._watch_solution,
             "ghost": self._toggle_ghost, ZONES: self._toggle_zones,
         }  # fmt: skip
 
@@ -100,6 +109,10 @@ class Game:
         self._stage().earlier = None
         self._find_ghost()
 
+    def run_along(self, replay: Replay) -> None:
+        """Let the ghost of another run go along."""
+        self._ghost = GhostRun(replay)
+
     def _find_ghost(self) -> None:
         """Look for the best run of the level, and let its ghost go along where it is wanted."""
         self.has_ghost = self._keeps_best and best_recording(self._playback.level) is not None
@@ -110,6 +123,50 @@ class Game:
     def _keeps_best(self) -> bool:
         """Whether the best run of the level is kept: not of what is being edited, which is another one every time."""
         return self.is_on and self._has_rules and not self._screen.of_document
+
+    @property
+    def offered(self) -> dict[str, bool]:
+        """Whether there is something for actions of a game to do."""
+        has_solution = self._solution is not None
+        return {"ghost": self.has_ghost, "card": self.is_on, "as_it_was": self.is_on, "solution": has_solution}
+
+    @property
+    def _file(self) -> Path | None:
+        """The file of the level: one's own, that which the editor has open, or a shipped one; None: there is none."""
+        screen, name, editor = self._screen, file_of(self._playback.level), self._app.documents.editor
+        if screen.of_document:
+            return editor.level_file.path if editor is not None else None
+        return screen.source or (shipped_folder("levels") / name if name else None)
+
+    def _read_solution(self) -> Iterator[None]:
+        """Read the solution beside the level's file, a slice at a time."""
+        path = self._file
+        if self.is_on and path is not None:
+            self._solution = yield from known_solution(self._playback.level, path)
+
+    @property
+    def solved(self) -> str:
+        """The win of the solution in words; "" while none is known."""
+        return "" if self._solution is None else self._solution[1]
+
+    def _watch_solution(self) -> None:
+        """Watch the solution, where there is one."""
+        if self._solution is None:
+            self._screen.say(NO_SOLUTION)
+            return
+        run, _ = self._solution
+        if self._screen.of_document:
+            self._app.documents.play(watched=run)
+        else:
+            self._app.start(Playback(run.level, run), self._screen.source)
+
+    def _keep_solution(self) -> None:
+        """Keep the run so far as the solution of the level's file."""
+        run, path = so_far(self._playback.session), self._file
+        if self._screen.of_document:
+            self._app.documents.keep_solution(run)
+        elif path is not None:
+            self._app.best.keep_solution(path, run, self._app.say)
 
     @property
     def shows_ghost(self) -> bool:
@@ -222,6 +279,8 @@ class Game:
             choices.append(("As it was", self.actions["as_it_was"]))
         if is_won and not screen.of_document:
             choices.append(("Send this", self._app.link_copying.begin))
+        if is_won and (screen.of_document or screen.source is not None):
+            choices.append(("Keep as solution", self._keep_solution))
         if self.has_ghost or self._is_recording:
             choices.append(("Race your best", self._race))
         return [*choices, ("Keep watching", self.keep_watching)]
@@ -300,6 +359,7 @@ class Game:
                 # What was undone did not happen, and the run goes on; who goes through time stays where he is.
                 playback.clock.paused = self._ended_at != playback.session.tick
                 self.close()
+        work_for(self._reading, _READING)
         self._follow_goal(frame_time, pointer)
         if self._is_recording and not self._app.best.moves:
             self._is_recording = False
@@ -326,7 +386,7 @@ class Game:
             self._goal_left,
             self._playback.clock.paused or (pointer is not None and self.score.place.collidepoint(pointer)),
         )
-        if not self._playback.level.goal:
+        if not (self._playback.level.goal or self.solved):
             self._goal_left = 0.0
         elif is_asked and self.card is None:
             self._goal_left = max(self._goal_left, FADING)
@@ -352,7 +412,7 @@ class Game:
             return
         playback = self._playback
         chips = chips_of(playback.level, playback.current, self.result)
-        goal = playback.level.goal if self.card is None else ""
+        goal = (playback.level.goal, self.solved) if self.card is None else ("", "")
         self.score.draw(surface, self._ui, chips, goal, self._goal_left / FADING, self._area)
 
 
@@ -361,6 +421,8 @@ def _restart_key() -> str:
     return spoken(next(entry.keys for entry in shortcuts("play") if entry.action == "reset"))
 
 
+# Wall time [s] of a frame in which a solution is read.
+_READING = 0.004
 # Wall time [s] that its ticks may take in a frame; where that is too little it is not seen until it has caught up.
 _GHOST_BUDGET = 0.006
 

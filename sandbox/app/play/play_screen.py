@@ -183,10 +183,8 @@ class PlayScreen:
         self._ui = ui
         wanted = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
         self.show_panel = self._allowed.has_panel and wanted
-        self._has_ghost = self.game.has_ghost
-        is_game = self.game.is_on
-        offered = {"keep": self.of_document, "ghost": self._has_ghost, "card": is_game, "as_it_was": is_game}
-        absent = self._allowed.absent | {action for action, is_offered in offered.items() if not is_offered}
+        self._offered = {"keep": self.of_document, **self.game.offered}
+        absent = self._allowed.absent | {action for action, is_offered in self._offered.items() if not is_offered}
         # The editor is a button away from what it has open.
         self.toolbar = Toolbar(ui, self._app.act, absent, {"share" if self.of_document else "edit"})
         self.stage.place(self.viewport, ui.scale)
@@ -500,7 +498,7 @@ class PlayScreen:
         self._tell()
         self.game.update(frame_time, pointer)
         self.problems.update()
-        if self.game.has_ghost != self._has_ghost:
+        if self._offered != {**self._offered, **self.game.offered}:
             self._app.rebuild()
         self._show_again()
         if self.panel is not None:

@@ -98,9 +98,12 @@ class ScoreView:
         self._kept: RecentPictures[tuple[object, ...]] = RecentPictures(HELD)
 
     def draw(
-        self, surface: pygame.Surface, ui: Ui, chips: list[Chip], goal: str, opacity: float, area: pygame.Rect
-    ) -> None:
-        """Draw chips at the middle of the top of an area [pixels], and below them the goal at that opacity 0..1."""
+        self, surface: pygame.Surface, ui: Ui, chips: list[Chip], goal: tuple[str, str], opacity: float,
+        area: pygame.Rect,
+    ) -> None:  # fmt: skip
+        """Draw chips at the middle of the top of an area [pixels], and below them the goal at that opacity 0..1, with
+        what is said of its solution.
+        """
         y, middle, width = area.top + ui.px(TOP), area.centerx, max(area.width - 2 * ui.px(TOP), 1)
         self.place, last = pygame.Rect(middle, y, 0, 0), pygame.Rect(0, 0, 0, 0)
         for row in self._rows(ui, chips, width):
@@ -111,8 +114,8 @@ class ScoreView:
                 x += picture.width + ui.px(GAP)
             y += ui.px(CHIP + ROW_GAP)
         self.end = last if chips and chips[-1].icon in ENDS else pygame.Rect(0, 0, 0, 0)
-        if goal and opacity > 0.0:
-            picture = self._picture(ui, ("goal", goal, width), lambda: _painted_goal(ui, goal, width))
+        if any(goal) and opacity > 0.0:
+            picture = self._picture(ui, ("goal", goal, width), lambda: _painted_goal(ui, *goal, width))
             picture.set_alpha(round(255 * min(opacity, 1.0)))
             surface.blit(picture, picture.get_rect(midtop=(middle, y)))
 
@@ -171,12 +174,13 @@ def _painted_chip(ui: Ui, chip: Chip, most: int) -> pygame.Surface:
     return plate
 
 
-def _painted_goal(ui: Ui, goal: str, most: int) -> pygame.Surface:
-    """The goal on a plate that is at most so wide [pixels]."""
-    font, inset = ui.font(GOAL_SIZE, True), ui.px(PADDING)
-    width = min(ui.px(GOAL_WIDTH), most) - 2 * inset
-    lines = [font.render(line, True, TEXT) for line in wrapped(goal, font, max(width, 1), GOAL_LINES)]
-    step, middle = line_height(font), max(line.width for line in lines) // 2 + inset
+def _painted_goal(ui: Ui, goal: str, solved: str, most: int) -> pygame.Surface:
+    """The goal, and below it what is said of its solution, on a plate that is at most so wide [pixels]."""
+    inset = ui.px(PADDING)
+    width, lines = max(min(ui.px(GOAL_WIDTH), most) - 2 * inset, 1), list[pygame.Surface]()
+    for text, font, colour in ((goal, ui.font(GOAL_SIZE, True), TEXT), (solved, ui.font(NAME_SIZE), MUTED)):
+        lines += [font.render(line, True, colour) for line in wrapped(text, font, width, GOAL_LINES)] if text else []
+    step, middle = line_height(ui.font(GOAL_SIZE, True)), max(line.width for line in lines) // 2 + inset
     height = step * len(lines) + 2 * ui.px(GOAL_INSET)
     plate = _plate(ui, 2 * middle, height)
     for number, line in enumerate(lines):

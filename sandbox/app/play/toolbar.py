@@ -40,7 +40,7 @@ RIGHT = (("share", "share"), ("gallery", "levels"), ("panel", "panel"), ("more",
 # What is done more rarely is in the menu of the last button, in this order.
 MENU = (
     "share", "edit", "keep", "tool_drag", "tool_pin", "redo", "restart", "as_it_was", "step", "slow", "timeline",
-    "ghost", "card", "graphs", "compare", "fit", "sound", "save", "record", "toy", "settings", "help",
+    "ghost", "solution", "card", "graphs", "compare", "fit", "sound", "save", "record", "toy", "settings", "help",
 )  # fmt: skip
 # The word on a button in a wide window.
 WIDE_WORDS = {"share": "Share"}

@@ -1,5 +1,6 @@
 """Keeping: runs of the window are kept while they are played and as they were left, and the best run of each level."""
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from sandbox.app.base.loop import SliceQueue
@@ -7,7 +8,11 @@ from sandbox.app.run.playback import Playback
 from sandbox.editor.storage.best_runs import Result, keep_result, record_best
 from sandbox.editor.storage.scene_shelf import SceneShelf
 from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
+from sandbox.session.commands import CommandError
+from sandbox.session.replay.recording import Replay
 from sandbox.session.scene import RunScene
+from sandbox.session.solution import keep_solution
 
 # A run that goes on is kept so often [s]; after something was done in it, so soon.
 EVERY, SOON = 2.0, 0.5
@@ -101,6 +106,10 @@ class BestKeeping:
             self._works.add(record_best(playback.level, scene.script, scene.tick))
         return True
 
+    def keep_solution(self, path: Path, run: Replay, say: Callable[[str], None]) -> None:
+        """Record a run as the solution of a level's file, and say so."""
+        self._works.add(_kept(path, run, say))
+
     def update(self) -> None:
         """Go on with recording best runs for a part of a frame."""
         self._works.go_on(BUDGET)
@@ -109,3 +118,18 @@ class BestKeeping:
         """Record all that is still to be recorded."""
         while self.moves:
             self._works.go_on(1.0)
+
+
+def _kept(path: Path, run: Replay, say: Callable[[str], None]) -> Iterator[bool]:
+    """Record a run as a solution, a slice at a time."""
+    slices = keep_solution(path, run.script, run.ticks)
+    try:
+        while True:
+            next(slices)
+            yield True
+    except StopIteration as end:
+        say(f"Kept as its solution: {end.value.text}." if end.value.passed else f"Not kept: {end.value.text}.")
+    except (LevelError, CommandError) as error:
+        say(f"Not kept: {error.faults[0]}.")
+    except OSError as error:
+        say(f"The solution cannot be kept: {error.strerror or error}.")

@@ -28,6 +28,7 @@ from sandbox.session.commands import (
     Undo,
 )
 from sandbox.session.log import Branch, break_lines
+from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.scene import RunScene, SceneTaker
 from sandbox.session.session import Session
@@ -468,12 +469,14 @@ class Playback:
             return True
         cut = " (the file is cut off there)" if self.replay.end_hash is None else ""
         whole = "some were passed over, all others" if self._passed_over else self.replay.compared
-        outcome = f"verified: {whole} equal bit for bit" if self._equal else "NOT equal to the recording"
-        self._end_watching(f"{self.replay.ticks:,} ticks{cut}, {outcome}")
+        compared = f"verified: {whole} equal bit for bit" if self._equal else "NOT equal to the recording"
+        ended = outcome(self.level, self.session.world)
+        said = "" if ended is None else f", {outcome_text(ended, self.level.settings.tick_rate)}"
+        self._end_watching(f"{self.replay.ticks:,} ticks{cut}, {compared}{said}")
         return True
 
-    def _end_watching(self, outcome: str) -> None:
-        self.verdict = f"End of the recording: {outcome}"
+    def _end_watching(self, how: str) -> None:
+        self.verdict = f"End of the recording: {how}"
         self.clock.paused = True
         self.messages.append(self.verdict)
 

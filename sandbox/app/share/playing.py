@@ -5,6 +5,7 @@ import functools
 import math
 from collections.abc import Generator, Iterable, Sequence
 from dataclasses import asdict, replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from sandbox.app.base.sag_map import NO_SAG, SagMap, own_of, sag_sentence, scale
 from sandbox.app.draw.picture import particles_of
 from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
-from sandbox.app.share.runs_for_pages import RunForPages, carried_out, run_for_pages
+from sandbox.app.share.runs_for_pages import RunForPages, carried_out, link_to, run_for_pages
 from sandbox.app.sound.sound_events import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.editor.document import EditError
@@ -46,7 +47,9 @@ from sandbox.session.commands.records import ScriptLine, to_record
 from sandbox.session.outcome import star_words
 from sandbox.session.replay.format import header, seal
 from sandbox.session.replay.link import level_record
+from sandbox.session.replay.recording import ReplayError
 from sandbox.session.session import Session
+from sandbox.session.solution import known_solution
 from sandbox.tools.drawing import MATERIALS
 from sandbox.tools.dropping import COLOURS, PARTS, USUAL_RATE, at_rate, in_pace
 from sandbox.tools.dropping import DIGITS as PART_DIGITS
@@ -67,18 +70,23 @@ class Playable(NamedTuple):
     content: bytes
 
 
-def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> str:
-    """The page of a level, in one file; ticks: of a recording, whose commands the script has. Raises CommandError."""
-    return page_text(*playable(level, script, ticks))
+def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None, file: Path | None = None) -> str:
+    """The page of a level, in one file; ticks: of a recording, whose commands the script has. Raises CommandError.
+
+    file: of the level, beside which its solution lies.
+    """
+    return page_text(*playable(level, script, ticks, file))
 
 
-def playable(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> Playable:
+def playable(
+    level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None, file: Path | None = None
+) -> Playable:
     """The run for a page of any kind, as `page_of` makes it. Raises CommandError."""
-    return at_once(playable_in_slices(level, script, ticks))
+    return at_once(playable_in_slices(level, script, ticks, file=file))
 
 
 def playable_in_slices(
-    level: Level, script: Sequence[ScriptLine], ticks: int | None, begin: int = 0
+    level: Level, script: Sequence[ScriptLine], ticks: int | None, begin: int = 0, file: Path | None = None
 ) -> Generator[float, None, Playable]:
     """As `playable`, a slice of the work at a time: each gives the part that is done, 0..1.
 
@@ -96,7 +104,7 @@ def playable_in_slices(
         "gravity_limit": GRAVITY_LIMIT,
         "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
-        "goals": _goals(level, world),
+        "goals": _goals(level, world) | {"solved": None if file is None else (yield from _solved(level, file))},
         "absent": []
         if hands is None
         else [name for name, any_of in _NEEDS.items() if not any(map(hands.allows, any_of))],
@@ -138,6 +146,14 @@ def _goals(level: Level, world: World) -> dict[str, Any]:
     counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
     stars = {rule: words for rule in range(len(run_rules(level))) if (words := star_words(level, rule))}
     return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars}
+
+
+def _solved(level: Level, file: Path) -> Generator[float, None, dict[str, str] | None]:
+    """The solution beside a level's file, in words and as the fragment of a link; None: none wins, or too long."""
+    known = at_once(known_solution(level, file))
+    with contextlib.suppress(ReplayError):
+        return known and {"text": known[1], "fragment": (yield from link_to(known[0], "", 0))}
+    return None
 
 
 def _check(check: CheckDef, world: World) -> dict[str, Any]:

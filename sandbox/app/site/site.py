@@ -70,7 +70,7 @@ def _following(levels: Mapping[str, SiteLevel]) -> dict[str, SiteLevel]:
 
 
 def _write_level(each: SiteLevel, state: Snapshot, folder: Path, address: str | None, after: SiteLevel | None) -> None:
-    made = playable(each.level)
+    made = playable(each.level, file=each.path)
     write_file(_made(folder / LEVELS / f"{each.stem}.toy"), toy_file(made.content))
     shown = link_card(made.title, worded(made.hints, "mouse"), each.page, each.card_picture, address)
     bundle = f"../{SCRIPTS}/{BUNDLE.name}"

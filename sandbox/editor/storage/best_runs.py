@@ -16,13 +16,11 @@ from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.level_edits import SILENT
 from sandbox.session.outcome import MOST_STARS
-from sandbox.session.session import Session
+from sandbox.session.solution import recorded
 
 # Version of the file of a result.
 VERSION = 1
 SUFFIX = ".replay.jsonl"
-# Ticks of a run that is recorded again, from one pause to the next.
-SLICE_TICKS = 4
 
 
 @dataclass(frozen=True)
@@ -79,22 +77,9 @@ def record_best(level: Level, script: Sequence[ScriptLine], ticks: int, folder: 
     path = _recording(level, folder)
     # Of several windows each writes its own.
     partial = unfinished(path, SUFFIX)
-    session = Session(level, script=script)
-    try:
-        session.record_to(partial)
-        while session.tick < ticks:
-            session.advance()
-            if session.tick % SLICE_TICKS == 0:
-                yield True
-        session.apply_pending()
-        if session.stop_recording() is not None:
-            os.replace(partial, path)
-    except (CommandError, OSError):
-        pass
-    finally:
-        session.abandon_recording()
-        with contextlib.suppress(OSError):
-            partial.unlink(missing_ok=True)
+    with contextlib.suppress(CommandError, OSError):
+        yield from map(bool, recorded(level, script, ticks, partial))
+        os.replace(partial, path)
 
 
 def _recording(level: Level, folder: Path | None) -> Path:

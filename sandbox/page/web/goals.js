@@ -15,7 +15,7 @@ const number = new Intl.NumberFormat('en', { maximumFractionDigits: 2 });
 
 /** Elements that it fills: the line of the goal, that of counters and clock, and the card with its parts.
  * @typedef {{ goal: HTMLElement, score: HTMLElement, end: HTMLElement, again: HTMLElement, was: HTMLElement,
- * on: HTMLElement }} Places */
+ * on: HTMLElement, solved: HTMLAnchorElement }} Places */
 
 export class Goals {
   #shown = '';
@@ -29,6 +29,8 @@ export class Goals {
     this.places = places;
     places.goal.textContent = told.goal;
     places.goal.hidden = !told.goal;
+    places.solved.hidden = !told.solved;
+    if (told.solved) Object.assign(places.solved, { textContent: told.solved.text, href: told.solved.fragment, title: 'Watch it' });
     places.again.addEventListener('click', () => {
       this.#close();
       toy.restart();

@@ -11,6 +11,7 @@ import { Menu } from './menu.js';
 import { Messages, RANKS } from './messages.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
+import { outcome } from './rules.js';
 import { Toy } from './toy.js';
 /** @import { Droppable, Fresh, Level, Message, ToyEvents } from './types.js' */
 
@@ -33,7 +34,7 @@ const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', b: 'make', 
  * @type {Record<string, string | undefined>} */
 const COMMANDS = { z: 'undo', y: 'redo', 'Shift+z': 'redo' };
 /** Parts of the page that are no plain elements.
- * @typedef {{ picture: HTMLCanvasElement, verifying: HTMLProgressElement, time: HTMLInputElement }} Parts */
+ * @typedef {{ picture: HTMLCanvasElement, solved: HTMLAnchorElement, verifying: HTMLProgressElement, time: HTMLInputElement }} Parts */
 /** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */
 /** @template {string} I @param {I} id @returns {Part<I>} */
 function byId(id) {
@@ -71,7 +72,7 @@ class Page {
     this.catalogue = element('select', { id: 'catalogue', className: 'part' }, new Option('More', ''),
       ...level.about.adding.catalogue.map(({ id, name }) => new Option(name[0].toUpperCase() + name.slice(1), id)));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
-      again: byId('end-again'), was: byId('end-was'), on: byId('end-on') });
+      again: byId('end-again'), was: byId('end-was'), on: byId('end-on'), solved: byId('solved') });
     this.menu = new Menu(byId('menu'), this.toy);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
@@ -282,7 +283,7 @@ class Page {
   }
 
   async #verify() {
-    const { fresh, level: { recording } } = this.toy;
+    const { fresh, level: { recording, goals: { solved } }, rate } = this.toy;
     if (!recording) return;
     const count = recording.hashes.length - 1, isLinked = recording.end !== undefined;
     /** @type {(text: string, isGood?: boolean) => void} */
@@ -295,13 +296,16 @@ class Page {
     bar.hidden = false;
     this.goals.isAsSent = isLinked;
     try {
-      const wrong = await verified(fresh(), recording, (done) => { bar.value = done; });
+      const world = fresh(), wrong = await verified(world, recording, (done) => { bar.value = done; });
       this.goals.isAsSent = isLinked && wrong !== null;
       const seconds = `${((wrong?.tick ?? 0) / this.toy.rate).toFixed(1)} s`;
       if (wrong?.words) say(`Not verified: at ${seconds} ${wrong.words}.`);
       else if (wrong) say(`Not verified: this browser comes to other bits at ${seconds}, tick ${wrong.tick}.`);
-      else if (isLinked) say(`Verified: ${count} ticks, the very state that the sender had.`, true);
-      else say(`Verified: every bit of ${count} ticks is that of the recording.`, true);
+      else {
+        const won = outcome(world), isOwn = solved && solved.fragment === location.hash;
+        const end = isOwn ? ` ${solved.text}` : won?.isWon ? ` Solved in ${(won.tick / rate).toFixed(1)} s with ${starText(won.stars)}.` : '';
+        say(`Verified: ${isLinked ? `${count} ticks, the very state that the sender had` : `every bit of ${count} ticks is that of the recording`}.${end}`, true);
+      }
     } catch (error) {
       say('Not verified: this recording could not be compared.');
       console.error(error);

@@ -303,6 +303,8 @@ export interface Goals {
   hasClock: boolean;
   // What the second and the third star take, by the rules that win.
   stars: Record<number, string[]>;
+  // The solution beside the level, and the fragment of a link to it.
+  solved: { text: string, fragment: string } | null;
 }
 
 // Gives a world of its own before the first tick.

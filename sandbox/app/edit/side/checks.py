@@ -8,6 +8,7 @@ import pygame
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
 from sandbox.app.edit.side.side_page import HeadButton, ListHead, SidePage
+from sandbox.app.edit.side.solution_strip import STRIP, SolutionStrip
 from sandbox.app.widgets.form import Form
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
@@ -17,6 +18,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.session.check_run import checks_as_they_end
+from sandbox.session.level_edits import runs_alike
 
 # Part of the page that the list takes.
 LIST_PART = 0.38
@@ -40,12 +42,6 @@ class Trial:
     def is_running(self) -> bool:
         """Whether results of checks are still to come."""
         return self._thread.is_alive()
-
-    def holds_for(self, level: Level) -> bool:
-        """Whether its results are those of a level: only what runs has to be the same."""
-        things = ("bodies", "particles", "springs", "welds", "walls", "terrain", "zones", "counters", "rules")
-        parts = (*things, "materials", "settings", "contacts")
-        return all(getattr(level, part) is getattr(self.level, part) for part in parts)
 
     def wait(self) -> None:
         """Wait until all runs have ended."""
@@ -81,12 +77,17 @@ class ChecksPage(SidePage):
             self._ui, place, LIST_PART, len(buttons), buttons, self._choose, container, empty=NOTHING, most_lines=2
         )
         self.list, self.buttons = self._head.list, list(self._head.buttons.values())
-        self.form = Form(screen, self._head.area, self._head.top)
+        area, top = self._head.area, self._head.top
+        # A level that nobody can win has no solution.
+        strip = STRIP if screen.document.level.has_goal else 0.0
+        place = pygame.Rect(0, self._ui.px(top), area.view.rect.width - self._ui.px(2), self._ui.px(strip))
+        self.solution = SolutionStrip(screen, place, area.content) if strip else None
+        self.form = Form(screen, area, top + strip)
 
     def refresh(self) -> None:
         """Show the checks and their results as they are now."""
         document, trial = self._screen.document, self.trial
-        if trial is not None and not trial.holds_for(document.level):
+        if trial is not None and not runs_alike(trial.level, document.level):
             trial.is_stopped = True
             trial = self.trial = None
         results = {} if trial is None else trial.results
@@ -98,6 +99,8 @@ class ChecksPage(SidePage):
             if trial is not None and trial.fault is not None and not is_running:
                 self._screen.say(trial.fault)
         self.form.refresh()
+        if self.solution is not None:
+            self.solution.refresh()
 
     def _show(self, document: Document, results: dict[CheckDef, CheckResult], is_running: bool) -> None:
         checks = document.level.checks
