@@ -139,7 +139,7 @@ def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
             again = roll_back(replay, options.rollback, level, _onward(bar)).found
         if again is not None:
             return _failed(name, again, f"rolled back {options.rollback} ticks, diverged at {again}")
-    return _equal(name, replay, level or replay.level, worlds[0] if worlds else None, options.rollback)
+    return _equal(name, replay, replay.on(level), worlds[0] if worlds else None, options.rollback)
 
 
 def _level_against(name: str, replay: "Replay") -> "Level":

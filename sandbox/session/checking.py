@@ -47,7 +47,7 @@ def solution_of(path: Path) -> Path:
 
 def play_out(replay: Replay, level: Level) -> Outcome | None:
     """The outcome of a level by a recording's commands, until it is won or lost; None: neither. Raises CommandError."""
-    session = Session(level, script=replay.script)
+    session = Session(replay.on(level), script=replay.script)
     while outcome(level, session.world) is None and session.tick < replay.ticks:
         session.advance()
     return outcome(level, session.world)

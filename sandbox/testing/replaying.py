@@ -17,6 +17,7 @@ from sandbox.level.reading.files import LevelError, file_of, shipped_levels
 from sandbox.session.checking import play_out
 from sandbox.session.commands import CommandError
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
+from sandbox.session.level_edits import with_settings
 from sandbox.session.replay.nearest_level import NoLevelError, known_level, level_among, level_in, nearest
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
@@ -27,7 +28,6 @@ from sandbox.session.replay.rerecord import (
     missing_names,
     new_names,
     record_again,
-    with_settings,
 )
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
 from sandbox.testing.files import SOLUTION, Failed, asked_renames, level_files, levels_around
@@ -253,21 +253,22 @@ def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
     here, name = Path(replay.source).resolve(), file_of(replay.level)
     found = nearest({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}, replay)
     if not found:
-        if not name or _is_shipped(replay.level):
+        if not name or _is_shipped(replay):
             return None
         raise Failed(
             f"{replay.source}: its level, {name} with the title {replay.level.name!r}, is neither beside it nor in a "
             "folder levels there or around, nor among sandbox_levels",
             "to run recordings on the copies that they hold: sandbox_against = own",
         )
-    if len(found) > 1 and any(replay.level == level_of(path) for path in found):
+    if len(found) > 1 and any(replay.level == replay.on(level_of(path)) for path in found):
         return replay.level
     return _read(level_among, found, replay, found[0].parent)
 
 
-def _is_shipped(level: Level) -> bool:
-    """Whether the level is as the program ships it."""
-    return any(path.name == file_of(level) and level_of(path) == level for path in shipped_levels())
+def _is_shipped(replay: Replay) -> bool:
+    """Whether the level of a recording is as the program ships it."""
+    level = replay.level
+    return any(path.name == file_of(level) and replay.on(level_of(path)) == level for path in shipped_levels())
 
 
 def level_of(path: Path) -> Level:
