@@ -5,10 +5,14 @@ import fnmatch
 import json
 import zlib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from sandbox.session.replay import FORMAT, RECORDINGS, is_recording
+
+if TYPE_CHECKING:
+    from sandbox.session.compare.comparison import Comparison
 
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
@@ -25,10 +29,11 @@ _LEVELS = pytest.StashKey[frozenset[Path]]()
 
 
 class Failed(Exception):
-    """Why a test fails, a line each; shown without a traceback."""
+    """Why a test fails, a line each; shown without a traceback. found: two runs that part, where there are."""
 
-    def __init__(self, *lines: str) -> None:
+    def __init__(self, *lines: str, found: "Comparison | None" = None) -> None:
         super().__init__("\n".join(lines))
+        self.found = found
 
 
 def is_golden(path: Path) -> bool:

@@ -185,9 +185,8 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     smaller: list[str] = []
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
-    return Failed(
-        *failure, *(pictures_of(config, found, path) if found else []), *smaller, _way_out(config, golden, found)
-    )
+    pictures = pictures_of(config, found, path) if found else []
+    return Failed(*failure, *pictures, *smaller, _way_out(config, golden, found), found=found)
 
 
 def _named(config: pytest.Config, path: Path) -> str:
