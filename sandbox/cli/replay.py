@@ -39,6 +39,7 @@ class ReplayOptions:
     report: Path | None = option(
         Path, metavar="OUT.html", help="a page of all that fail, each with cause, distance and both runs"
     )
+    github: bool = flag("annotate files on GitHub, and write the summary of the job")
     to_end: bool = flag("where it diverges, go on to the end: how far apart, and does it heal or grow?")
     against: str | None = option(
         str,
@@ -89,7 +90,16 @@ def verify_files(options: ReplayOptions) -> int:
         from sandbox.session.player.report import write_report
 
         tell([write_report(failures, len(names), options.report)])
+    if options.github:
+        from sandbox.session.player.github import tell_github
+
+        print("\n".join(tell_github(failures, len(names), Path.cwd())))
     return worst
+
+
+def _tells_failures(options: ReplayOptions) -> bool:
+    """Whether more is asked for of what fails than its lines."""
+    return options.report is not None or options.github
 
 
 def _recordings(names: Sequence[str]) -> list[str]:
@@ -130,7 +140,7 @@ def _verified(name: str, options: ReplayOptions, shows: bool = False) -> Verifie
     except (Refused, ReplayError) as error:
         found = Verified(EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)})
     failure = found.failure
-    if options.report and failure is None and found.code != EXIT_OK:
+    if _tells_failures(options) and failure is None and found.code != EXIT_OK:
         from sandbox.session.player.report import ReportedFailure
 
         failure = ReportedFailure(name, tuple(found.report.get("faults") or found.report["text"].splitlines()))
@@ -193,13 +203,13 @@ def _diverged(name: str, found: "Comparison", options: ReplayOptions, shows: boo
     from sandbox.session.compare.comparison import to_the_end
 
     text, more, failure = "\n  ".join([f"diverged at {found.divergence}", *found.edits]), {}, None
-    if options.to_end or options.report:
+    if options.to_end or _tells_failures(options):
         with _progress(found.replay, shows) as bar:
             found = to_the_end(found, _onward(bar))
     if options.to_end:
         distance = [*found.distance.lines_of_all(), found.distance.verdict()] if found.distance else []
         text = "\n  ".join([text, *distance])
-    if options.report is not None:
+    if _tells_failures(options):
         from sandbox.session.player.report import ReportedFailure
 
         against = ["--replay-against", options.against or "own"]

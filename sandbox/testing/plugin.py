@@ -86,6 +86,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--replay-report", metavar="FILE.html", help="write a page of all failures, which plays both runs of each"
     )
+    group.addoption(
+        "--replay-github", action="store_true", help="annotate files on GitHub, and write the summary of the job"
+    )
     parser.addini("sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=USUAL_LEVELS)
     parser.addini(
         "sandbox_against",
@@ -200,7 +203,7 @@ def sandbox_session(request: pytest.FixtureRequest) -> "SandboxSession":
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
     """Keep the runs of a test in Python that fails, and what a page of all failures has of any."""
     report = yield
-    if report.failed and item.config.getoption("--replay-report"):
+    if report.failed and (item.config.getoption("--replay-report") or item.config.getoption("--replay-github")):
         from sandbox.session.player.report import ReportedFailure
 
         lines = [line for line in report.longreprtext.splitlines() if not is_of_here(line)]
@@ -224,19 +227,22 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
 _updated: list[str] = []
 
 
-def _write_report(terminalreporter: Any, config: pytest.Config) -> None:
-    name = config.getoption("--replay-report")
-    if not name:
-        return
+def _tell_failures(terminalreporter: Any, config: pytest.Config) -> None:
+    """Write the page of all failures, and tell GitHub of them."""
+    from sandbox.session.player.github import tell_github
     from sandbox.session.player.report import ReportedFailure, write_report
 
     failures = sorted((ReportedFailure(*each) for each in config.stash[_FAILURES]), key=lambda each: each.name)
     stats = terminalreporter.stats
     tests = sum(len(stats.get(kind, ())) for kind in ("passed", "failed", "error"))
+    page = config.getoption("--replay-report")
     try:
-        terminalreporter.write_line(write_report(failures, tests, config.invocation_params.dir / name))
+        lines = tell_github(failures, tests, config.rootpath) if config.getoption("--replay-github") else []
+        lines += [write_report(failures, tests, config.invocation_params.dir / page)] if page else []
     except OSError as error:
-        terminalreporter.write_line(f"{name}: cannot be written: {error.strerror or error}")
+        lines = [f"{error.filename or page}: cannot be written: {error.strerror or error}"]
+    for line in lines:
+        terminalreporter.write_line(line)
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
@@ -248,7 +254,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         for line in grouped(_updated):
             terminalreporter.write_line(line)
         _updated.clear()
-    _write_report(terminalreporter, config)
+    if config.getoption("--replay-report") or config.getoption("--replay-github"):
+        _tell_failures(terminalreporter, config)
     untested = sorted(config.stash[_UNTESTED].items())
     if untested:
         terminalreporter.section("not tested")

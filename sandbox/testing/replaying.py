@@ -86,7 +86,7 @@ def replay_test(config: pytest.Config, path: Path) -> Update | None:
     if golden.is_renamed:
         raise _failed(config, golden, golden.rename_lines()[0], found)
     if found is not None:
-        raise _failed(config, golden, f"diverged: {found.cause()}", found)
+        raise _failed(config, golden, found.cause() if found.edits else f"diverged: {found.cause()}", found)
     return None
 
 
@@ -160,6 +160,7 @@ class _Golden:
         raise ReplayError(
             f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self.level_name} lacks{known}",
             rename_hint(config, self.path, missing[0]),
+            f"if it is gone for good, {_by_commands(config, self.path)}",
         )
 
 
@@ -178,10 +179,9 @@ def _golden(config: pytest.Config, path: Path) -> _Golden:
 def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Comparison | None) -> Failed:
     """A failure that says what was edited, how far the runs come apart, and how to accept it."""
     path = golden.path
-    failure = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
     lines = [*golden.rename_lines(), *(found.lines() if found else ["with these names every bit is equal"])]
-    # A single edit is in the headline already.
-    failure += [line for line in lines if not failure[0].endswith(f": {line}")]
+    # A single edit is the headline already.
+    failure = [headline, *(line for line in lines if line != headline)]
     smaller: list[str] = []
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
@@ -214,9 +214,14 @@ def _way_out(config: pytest.Config, golden: _Golden, found: Comparison | None) -
     path = golden.path
     if found is None or found.distance is None or "the new run ends" not in found.distance.stopped:
         return PLAY_AGAIN if golden.stops_winning() else acceptance(config, path)
+    return f"to accept, {_by_commands(config, path)}"
+
+
+def _by_commands(config: pytest.Config, path: Path) -> str:
+    """The way out where the commands of a recording do not fit the level any more."""
     commands = f"{_named(config, path).partition('.replay')[0]}.commands.jsonl"
     export = shlex.join(["sandbox", "export", _named(config, path), "--to", "commands", "-o", commands])
-    return f"to accept, edit its commands and record them again by `sandbox run --record`: {export}"
+    return f"edit its commands and record them again by `sandbox run --record`: {export}"
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
