@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from sandbox.session.replay import FORMAT, RECORDINGS, is_recording
+from sandbox.session.replay import FORMAT, RECORDINGS, is_recording, smallest_test, stem_of
 
 if TYPE_CHECKING:
     from sandbox.session.compare.comparison import Comparison
@@ -39,6 +39,11 @@ class Failed(Exception):
 def is_golden(path: Path) -> bool:
     """Whether a file is called as golden files are."""
     return path.name.endswith(GOLDEN)
+
+
+def has_test(path: Path) -> bool:
+    """Whether a recording is the smallest run of a failure, beside a test in Python that tells of it."""
+    return stem_of(path.name).endswith(".smallest") and smallest_test(path).is_file()
 
 
 def level_files(config: pytest.Config) -> frozenset[Path]:

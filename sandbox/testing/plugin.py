@@ -18,6 +18,7 @@ from sandbox.testing.files import (
     USUAL_LEVELS,
     asked_renames,
     fits,
+    has_test,
     is_asked_level,
     is_golden,
     is_level,
@@ -131,6 +132,8 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     """Recordings and golden files by names; levels that the setting names, or the command line."""
     _note_untested(parent.config, file_path)
     if is_recording(file_path):
+        if has_test(file_path):
+            return None
         return RecordingTest.from_parent(parent, path=file_path)
     if is_golden(file_path):
         return GoldenTest.from_parent(parent, path=file_path)

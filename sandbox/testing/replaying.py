@@ -30,7 +30,7 @@ from sandbox.session.replay.rerecord import (
     record_again,
 )
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.files import SOLUTION, Failed, asked_renames, level_files, levels_around
+from sandbox.testing.files import SOLUTION, Failed, asked_renames, is_golden, level_files, levels_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -398,11 +398,12 @@ def grouped(texts: Iterable[str]) -> list[str]:
         most = max(updates, key=lambda each: each.farthest)
         names = sorted(each.name for each in updates)
         more = f" and {len(names) - RECORDINGS_NAMED} more" if len(names) > MOST_NAMED else ""
+        what = "golden file" if is_golden(Path(most.name)) else "recording"
         of = f" ({most.name})" if len(names) > 1 and most.farthest else ""
         lines += [
             *cause,
             f"  {most.effect}{of}",
             *(f"  {line}{of}" for line in most.checks),
-            f"  {len(names)} recording{'s' if len(names) > 1 else ''}: {', '.join(names[:RECORDINGS_NAMED])}{more}",
+            f"  {len(names)} {what}{'s' if len(names) > 1 else ''}: {', '.join(names[:RECORDINGS_NAMED])}{more}",
         ]
     return lines

@@ -3,6 +3,7 @@
 `verify` and `compare` run a recording again; `difference` takes any two recordings or levels.
 """
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -449,7 +450,7 @@ def _command_lines(sides: tuple[ComparedRun, ComparedRun], ticks: int) -> tuple[
         return ()
 
     def words(line: ScriptLine | None) -> str:
-        return "there is none" if line is None else f"tick {line.tick}: {line.record}"
+        return "there is none" if line is None else f"tick {line.tick}: {json.dumps(line.record)}"
 
     for number in range(max(map(len, scripts))):
         a, b = (script[number] if number < len(script) else None for script in scripts)

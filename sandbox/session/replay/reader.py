@@ -24,7 +24,7 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.faults import plain_fault
-from sandbox.session.commands.records import ScriptLine
+from sandbox.session.commands.records import UNNUMBERED, ScriptLine
 from sandbox.session.replay import FORMAT
 from sandbox.session.replay.format import CHAIN_DIGITS, TICK_DIGITS, VERSION, level_digest, unseal
 from sandbox.session.replay.recording import ByHand, OtherPhysicsError, Replay, ReplayError, StoredState, TickHashes
@@ -53,8 +53,6 @@ Digest = Annotated[str, Field(max_length=128)]
 SIZE_LIMIT = 32 * 2**20
 LINE_LIMIT = 250_000
 FAULT_LIMIT = 50  # that are told of one script
-# Gestures that a script does not number are numbered by line from here, beyond those that it does.
-UNNUMBERED = 2**40
 
 
 class Line(BaseModel):

@@ -23,7 +23,7 @@ from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
-from sandbox.session.commands.records import ScriptLine
+from sandbox.session.commands.records import UNNUMBERED, ScriptLine
 from sandbox.session.level_edits import with_settings
 from sandbox.session.replay.format import (
     ARRAY_DIGITS,
@@ -339,4 +339,5 @@ def _lines(replay: Replay) -> Iterator[str]:
 
 def _command_lines(replay: Replay) -> Iterator[str]:
     for line in replay.script:
-        yield json.dumps({"tick": line.tick, "gesture": line.gesture, "command": line.record}, ensure_ascii=False)
+        gesture = {"gesture": line.gesture} if line.gesture < UNNUMBERED else {}
+        yield json.dumps({"tick": line.tick, **gesture, "command": line.record}, ensure_ascii=False)
