@@ -78,7 +78,7 @@ def _json(options: DiffOptions, found: "RunDifference") -> dict[str, Any]:
     from sandbox.session.probe import finite
 
     where = None if found.divergence is None else finite(asdict(found.divergence))
-    distance = {} if found.distance is None else {"apart": finite(asdict(found.distance))}
+    distance = {} if found.distance is None else {"apart": finite(found.distance.data())}
     return {"a": options.first, "b": options.second, "equal": found.is_equal, "level": list(found.level),
             "commands": list(found.commands), "divergence": where, "lines": found.lines(), **distance}  # fmt: skip
 

@@ -2,18 +2,19 @@
 
 import json
 import os
+import shlex
 import sys
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
-from sandbox.cli.base.running import PAGE, write_report
+from sandbox.cli.base.running import PAGE, watching
 from sandbox.terminal import Progress, cores, count, processes, shortened, tell
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from sandbox.physics.world import World
     from sandbox.session.compare.comparison import Comparison
     from sandbox.session.compare.divergence import Divergence
+    from sandbox.session.player.report import ReportedFailure
     from sandbox.session.replay.recording import Replay
 
 # A process that verifies recordings takes as long to start as some recordings take; fewer are not worth one.
@@ -34,7 +36,10 @@ class ReplayOptions:
     files: list[str] = arguments(str, "FILE|FOLDER")
     json: bool = flag("print one JSON object a file")
     partial: bool = flag("verify what there is of a recording that is cut off")
-    report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
+    report: Path | None = option(
+        Path, metavar="OUT.html", help="a page of all that fail, each with cause, distance and both runs"
+    )
+    github: bool = flag("annotate files on GitHub, and write the summary of the job")
     to_end: bool = flag("where it diverges, go on to the end: how far apart, and does it heal or grow?")
     against: str | None = option(
         str,
@@ -51,10 +56,11 @@ class ReplayOptions:
 
 @dataclass(frozen=True)
 class Verified:
-    """The result of a recording: the exit code, and its report."""
+    """The result of a recording: the exit code, its report, and what the page of all failures has of it."""
 
     code: int
     report: dict[str, Any]
+    failure: "ReportedFailure | None" = None
 
 
 def verify_files(options: ReplayOptions) -> int:
@@ -62,10 +68,10 @@ def verify_files(options: ReplayOptions) -> int:
     names = _recordings(options.files)
     if options.against and not os.path.isdir(options.against):
         level_of(options.against)
-    if options.report and (len(names) > 1 or options.report.suffix.lower() != PAGE):
-        raise Refused("--report: is of one recording, into a file whose name ends in .html")
+    if options.report and options.report.suffix.lower() != PAGE:
+        raise Refused(f"--report: {options.report}: end the name in {PAGE}")
     at_once = min(options.processes or max(1, min(cores(), len(names) // FILES_PER_PROCESS)), len(names))
-    worst = EXIT_OK
+    worst, failures = EXIT_OK, []
     bar = Progress(len(names) if len(names) > 1 else 0, "recording")
     with bar, closing(_all_verified(names, at_once, options)) as results:
         for name, found in zip(names, results, strict=True):
@@ -78,8 +84,22 @@ def verify_files(options: ReplayOptions) -> int:
                 if not options.json:
                     tell(found.report.get("faults", ()))
             worst = max(worst, found.code)
+            failures += [found.failure] if found.failure else []
             bar.update()
+    if options.report:
+        from sandbox.session.player.report import write_report
+
+        tell([write_report(failures, len(names), options.report)])
+    if options.github:
+        from sandbox.session.player.github import tell_github
+
+        print("\n".join(tell_github(failures, len(names), Path.cwd())))
     return worst
+
+
+def _tells_failures(options: ReplayOptions) -> bool:
+    """Whether more is asked for of what fails than its lines."""
+    return options.report is not None or options.github
 
 
 def _recordings(names: Sequence[str]) -> list[str]:
@@ -119,7 +139,12 @@ def _verified(name: str, options: ReplayOptions, shows: bool = False) -> Verifie
         found = _compared(name, options, shows)
     except (Refused, ReplayError) as error:
         found = Verified(EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)})
-    return Verified(found.code, {**found.report, "wall_seconds": time.perf_counter() - start})
+    failure = found.failure
+    if _tells_failures(options) and failure is None and found.code != EXIT_OK:
+        from sandbox.session.player.report import ReportedFailure
+
+        failure = ReportedFailure(name, tuple(found.report.get("faults") or found.report["text"].splitlines()))
+    return Verified(found.code, {**found.report, "wall_seconds": time.perf_counter() - start}, failure)
 
 
 def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
@@ -139,7 +164,7 @@ def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
             again = roll_back(replay, options.rollback, level, _onward(bar)).found
         if again is not None:
             return _failed(name, again, f"rolled back {options.rollback} ticks, diverged at {again}")
-    return _equal(name, replay, level or replay.level, worlds[0] if worlds else None, options.rollback)
+    return _equal(name, replay, replay.on(level), worlds[0] if worlds else None, options.rollback)
 
 
 def _level_against(name: str, replay: "Replay") -> "Level":
@@ -177,17 +202,23 @@ def _equal(name: str, replay: "Replay", level: "Level", end: "World | None", rol
 def _diverged(name: str, found: "Comparison", options: ReplayOptions, shows: bool) -> Verified:
     from sandbox.session.compare.comparison import to_the_end
 
-    text, more = "\n  ".join([f"diverged at {found.divergence}", *found.edits]), {}
-    if options.to_end:
+    text, more, failure = "\n  ".join([f"diverged at {found.divergence}", *found.edits]), {}, None
+    if options.to_end or _tells_failures(options):
         with _progress(found.replay, shows) as bar:
             found = to_the_end(found, _onward(bar))
+    if options.to_end:
         distance = [*found.distance.lines_of_all(), found.distance.verdict()] if found.distance else []
         text = "\n  ".join([text, *distance])
-    if options.report is not None:
-        write_report(found, options.report)
+    if _tells_failures(options):
+        from sandbox.session.player.report import ReportedFailure
+
+        against = ["--replay-against", options.against or "own"]
+        accept = f"to accept: {shlex.join(['pytest', '--replay-update', *against, name])}"
+        with watching(2 * found.replay.ticks if shows else 0) as watched:
+            failure = ReportedFailure.of(name, [found.cause(), *found.lines(), accept], found, watched)
     if found.distance:
-        more = {"apart": {**asdict(found.distance), "verdict": found.distance.verdict()}}
-    return _failed(name, found.divergence, text, **more)
+        more = {"apart": found.distance.data()}
+    return replace(_failed(name, found.divergence, text, **more), failure=failure)
 
 
 def _failed(name: str, found: "Divergence", text: str, **more: Any) -> Verified:

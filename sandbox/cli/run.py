@@ -123,7 +123,7 @@ def _keep_apart(options: RunOptions) -> None:
 
 def _with_overrides(level: "Level", options: RunOptions) -> "Level":
     from sandbox.level.format.level_error import LevelError
-    from sandbox.session.replay.rerecord import with_settings
+    from sandbox.session.level_edits import with_settings
 
     settings = {"solver": options.solver, "substeps": options.substeps}
     overrides = {name: value for name, value in settings.items() if value is not None}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.base.command import Subcommand, argument, flag, option
 from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of, recording_of
+from sandbox.session.replay import smallest_test, stem_of
 from sandbox.terminal import Progress, cores, processes
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def shrink(options: ShrinkOptions) -> int:
 
     replay = recording_of(options.file, partial=True)
     failure, level = _failure(options, replay)
-    output = options.output or Path(_stem(options.file) + ".smallest" + RECORDING)
+    output = options.output or Path(stem_of(options.file) + ".smallest" + RECORDING)
     if not output.name.endswith(RECORDING):
         raise Refused(f"-o: {str(output)!r}: the name of a recording ends in {RECORDING}")
     try:
@@ -186,7 +187,7 @@ def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", 
     assert shrinker.seen is not None
     failure = shrinker.seen.failure
     write_recording(shrinker.smallest, shrinker.level, output)
-    test = output.with_name(f"test_{_identifier(_stem(output.name))}.py")
+    test = smallest_test(output)
     against = options.against
     present = None if against else _present_level(shrinker)
     found = Path(against) if against and Path(against).exists() else present
@@ -212,16 +213,6 @@ def _present_level(shrinker: "Shrinker") -> Path | None:
         except (LevelError, FailureError):
             continue
     return None
-
-
-def _stem(name: str) -> str:
-    for ending in (".gz", ".jsonl", ".replay"):
-        name = name.removesuffix(ending)
-    return name
-
-
-def _identifier(name: str) -> str:
-    return "".join(each if each.isascii() and each.isalnum() else "_" for each in name).strip("_").lower()
 
 
 def _lines(shrinker: "Shrinker", options: ShrinkOptions, took: float, stopped: bool) -> list[str]:

@@ -7,6 +7,7 @@ of a few lines, to be read in a review.
 import codecs
 import json
 import math
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -140,7 +141,7 @@ def read_golden(path: Path) -> Golden:
     if wrong:
         lengths = {name: len(file.places[name]) for name in wrong}
         raise GoldenError(*(f"{path}: places.{name}: {lengths[name]} points, {len(file.at)} times" for name in wrong))
-    beside = path.parent / file.level
+    beside = Path(os.path.normpath(path.parent / file.level))
     level = load_level(beside if beside.is_file() else file.level)
     return Golden(path, file, level, _script(path, file, level))
 

@@ -2,13 +2,13 @@
 
 import copy
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, suggestion
-from sandbox.level.reading.files import level_data, parse_level
+from sandbox.level.reading.files import file_of, keep_file, level_data, parse_level, run_with
 
 # What a place holds that is not there.
 ABSENT = object()
@@ -107,6 +107,15 @@ def edited(level: Level, edits: Iterable[Edit]) -> Level:
     for edit in edits:
         _put(data, edit.path, edit.after)
     return parse_level(json.dumps(data).encode(), "the edited level")
+
+
+def with_settings(level: Level, settings: Mapping[str, Any], source: str) -> Level:
+    """A level that is run with other values of some of its settings, which source has given. Raises LevelError."""
+    data = level_data(level)
+    data["settings"] = {**data.get("settings", {}), **settings}
+    found = parse_level(json.dumps(data).encode(), source)
+    keep_file(found, file_of(level), tuple({**dict.fromkeys(run_with(level)), **settings}))
+    return found
 
 
 def field_place(level: Level, name: str) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.plan.actuators import driving_keys
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.rule import QuestionDef
 from sandbox.physics.analysis.query import grip_radius, shown_particles
 from sandbox.physics.snapshot import state_hash
@@ -301,7 +302,7 @@ def _aims(level: Level) -> list[tuple[int, str, Place]]:
         for each in (*(question.all or ()), *(question.any or ())):
             note(rule, each)
 
-    for number, rule in enumerate(level.rules):
+    for number, rule in enumerate(run_rules(level)):
         if all(action.fail is None for action in rule.then):
             note(number, rule.when)
     return found

@@ -108,11 +108,6 @@ class Session:
         return bool(self.history.redoable) and self.tick == self.history.last_tick
 
     @property
-    def scripted(self) -> bool:
-        """Whether a script still has commands to give."""
-        return self.history.scripted is not None
-
-    @property
     def recording(self) -> Path | None:
         """The file to which this run is recorded."""
         return None if self._recorder is None else self._recorder.path
@@ -231,14 +226,6 @@ class Session:
             raise ValueError("stop the recording before going back in time")
         with self._all_or_nothing(changes_history=False):
             self._rewind(tick, sought=True)
-
-    def forget_future(self) -> None:
-        """Make the present tick the end of the run; what followed is kept as a branch."""
-        self.history.drop_future(self.tick)
-
-    def kept_before(self, tick: int) -> int:
-        """The last tick up to a tick whose state is kept: from there `seek` steps again."""
-        return self.history.keyframes.before(whole("tick", tick)).tick
 
     def adopt(self, state: Snapshot) -> None:
         """Go to a state that a recording of this very run holds, without stepping there, and keep it.

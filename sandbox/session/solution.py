@@ -11,6 +11,7 @@ import numpy as np
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import one_line
 from sandbox.level.format.writing import unfinished
+from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.reading.files import read_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError
@@ -83,7 +84,7 @@ class Proof:
     """
 
     def __init__(self, level: Level, replay: Replay) -> None:
-        self.level, self.replay = level, replay
+        self.level, self.replay = replay.on(level), replay
         self.done = 0.0
         self.verdict: Verdict | None = None
         self.run: Replay | None = None
@@ -117,8 +118,12 @@ class Proof:
     def _parting(self, ended: Session) -> Generator[None, None, str]:
         """Where the run first differs from the recording's own by what a person sees; "": nowhere."""
         own, now = (Session(each, script=self.replay.script) for each in (self.replay.level, self.level))
-        same, rate, names = SameParticles(), self.replay.level.settings.tick_rate, [rule.id for rule in own.level.rules]
-        first = dict(zip((rule.id for rule in self.level.rules), ended.world.rule_first.tolist(), strict=True))
+        same, rate, names = (
+            SameParticles(),
+            self.replay.level.settings.tick_rate,
+            [rule.id for rule in run_rules(own.level)],
+        )
+        first = dict(zip((rule.id for rule in run_rules(self.level)), ended.world.rule_first.tolist(), strict=True))
         while True:
             far, (_, slot) = same.farthest(own.world, now.world)
             at = f"at {own.tick / rate:.2f} s"

@@ -39,13 +39,13 @@ class SandboxSession(Protocol):
 def found_level(level: LevelLike, folders: Sequence[Path] = ()) -> Level:
     """A level that a test names: itself, its JSON object, a file as seen from one of the folders, or a shipped name.
 
-    Raises LevelError.
+    A file may be named without its ending, and lie in a folder `levels` there. Raises LevelError.
     """
     if isinstance(level, Level):
         return level
     if isinstance(level, dict):
         return parse_level(json.dumps(level).encode(), "level")
-    places = [folder / level for folder in folders]
+    places = [folder / inside for folder in folders for inside in (level, f"{level}.json", f"levels/{level}.json")]
     return load_level(str(next((place for place in places if place.is_file()), level)))
 
 
@@ -62,6 +62,10 @@ class Driver:
         self._broken: list[str] = []
         # What was measured last, by the words of it.
         self._measured: dict[str, str] = {}
+
+    def __repr__(self) -> str:
+        """The run in a line."""
+        return f"<Driver of {self.level.name!r} at {self.seconds:g} s>"
 
     @property
     def seconds(self) -> float:

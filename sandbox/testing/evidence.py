@@ -49,6 +49,11 @@ def pictures_of(config: pytest.Config, found: "Comparison", path: Path) -> list[
     )
 
 
+def is_of_here(line: str) -> bool:
+    """Whether a line of a failure names a file of evidence, which another computer does not have."""
+    return line.removeprefix("no ").partition(": ")[0] in ("picture", "pictures", "motion", "player")
+
+
 def name_of(config: pytest.Config, path: Path) -> str:
     """Name for the files of evidence about a file, made of its place."""
     return "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name

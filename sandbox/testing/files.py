@@ -5,10 +5,14 @@ import fnmatch
 import json
 import zlib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-from sandbox.session.replay import FORMAT, RECORDINGS, is_recording
+from sandbox.session.replay import FORMAT, RECORDINGS, is_recording, smallest_test, stem_of
+
+if TYPE_CHECKING:
+    from sandbox.session.compare.comparison import Comparison
 
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
@@ -25,15 +29,21 @@ _LEVELS = pytest.StashKey[frozenset[Path]]()
 
 
 class Failed(Exception):
-    """Why a test fails, a line each; shown without a traceback."""
+    """Why a test fails, a line each; shown without a traceback. found: two runs that part, where there are."""
 
-    def __init__(self, *lines: str) -> None:
+    def __init__(self, *lines: str, found: "Comparison | None" = None) -> None:
         super().__init__("\n".join(lines))
+        self.found = found
 
 
 def is_golden(path: Path) -> bool:
     """Whether a file is called as golden files are."""
     return path.name.endswith(GOLDEN)
+
+
+def has_test(path: Path) -> bool:
+    """Whether a recording is the smallest run of a failure, beside a test in Python that tells of it."""
+    return stem_of(path.name).endswith(".smallest") and smallest_test(path).is_file()
 
 
 def level_files(config: pytest.Config) -> frozenset[Path]:

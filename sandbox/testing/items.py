@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
     from sandbox.level.document.model import Level
 
+# The tests of a level that are no checks.
+VALID, GOAL = "is valid", "goal"
 # Told where a file does not even say that it is a level.
 ELSEWHERE = "it lies where levels lie; if it is something else, keep it elsewhere, or name levels by sandbox_levels"
 
@@ -66,12 +68,16 @@ class LevelTests(pytest.File):
 
     def collect(self) -> Iterator[pytest.Item]:
         """A test that it is a level, and one a check."""
-        yield LevelItem.from_parent(self, name="is valid")
-        for number, name in enumerate(check_names(self.path)):
+        yield LevelItem.from_parent(self, name=VALID)
+        taken = {VALID, GOAL}
+        for number, check in enumerate(check_names(self.path)):
+            # An id is of one test, and "::" is between its parts.
+            name = check.replace("::", ":")
+            name = f"{name}, check {number + 1}" if name in taken else name
+            taken.add(name)
             yield CheckItem.from_parent(self, name=name, number=number)
-
         if has_solution(self.path):
-            yield GoalItem.from_parent(self, name="goal")
+            yield GoalItem.from_parent(self, name=GOAL)
 
     def result(self, number: int) -> "CheckResult":
         """The result of a check; all of the file are measured in the same run, as far as needed. Raises Failed."""
@@ -79,7 +85,11 @@ class LevelTests(pytest.File):
             from sandbox.session.check_run import checks_as_they_end
             from sandbox.testing.replaying import with_solver
 
-            self._running = checks_as_they_end(with_solver(self.config, self.level()))
+            try:
+                level = self.level()
+            except Failed:
+                raise Failed(f"{self.path.name} is no level, see its test {VALID!r}") from None
+            self._running = checks_as_they_end(with_solver(self.config, level))
             self._results: dict[int, CheckResult] = {}
         while number not in self._results:
             self._results.update(filter(None, [next(self._running)]))

@@ -6,17 +6,19 @@ by its name, for a level by where it lies, unless it says that it is something e
 
 from collections import deque
 from collections.abc import Generator
+from dataclasses import astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from sandbox.session.replay import is_recording
-from sandbox.testing.evidence import CHOICES, FIRST, runs_of
+from sandbox.testing.evidence import CHOICES, FIRST, is_of_here, runs_of
 from sandbox.testing.files import (
     USUAL_LEVELS,
     asked_renames,
     fits,
+    has_test,
     is_asked_level,
     is_golden,
     is_level,
@@ -42,6 +44,8 @@ _RUNS: "pytest.StashKey[deque[Driver]]" = pytest.StashKey()
 # Files that look like tests and are none, with the reason; and folders that were looked at.
 _UNTESTED = pytest.StashKey[dict[str, str]]()
 _FOLDERS = pytest.StashKey[set[Path]]()
+# What the page of all failures has of each, and of how many tests there are results.
+_FAILURES: pytest.StashKey[list[tuple[Any, ...]]] = pytest.StashKey()
 # So many of them are listed.
 MOST_UNTESTED = 20
 
@@ -80,6 +84,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default="first",
         help=f"of which failures there are pictures, recordings and pages; default: of the first {FIRST}",
     )
+    group.addoption(
+        "--replay-report", metavar="FILE.html", help="write a page of all failures, which plays both runs of each"
+    )
+    group.addoption(
+        "--replay-github", action="store_true", help="annotate files on GitHub, and write the summary of the job"
+    )
     parser.addini("sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=USUAL_LEVELS)
     parser.addini(
         "sandbox_against",
@@ -95,7 +105,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Refuse what cannot go together, and what names nothing, before anything runs."""
-    config.stash[_UNTESTED], config.stash[_FOLDERS] = {}, set()
+    config.stash[_UNTESTED], config.stash[_FOLDERS], config.stash[_FAILURES] = {}, set(), []
     for line in MARKERS:
         config.addinivalue_line("markers", line)
     solver = config.getoption("--replay-solver")
@@ -122,6 +132,8 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     """Recordings and golden files by names; levels that the setting names, or the command line."""
     _note_untested(parent.config, file_path)
     if is_recording(file_path):
+        if has_test(file_path):
+            return None
         return RecordingTest.from_parent(parent, path=file_path)
     if is_golden(file_path):
         return GoldenTest.from_parent(parent, path=file_path)
@@ -156,16 +168,19 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Hand what is not tested to the first process of xdist."""
+    """Hand what is not tested, and what failed, to the first process of xdist."""
     output = getattr(session.config, "workeroutput", None)
     if output is not None:
         output["sandbox_untested"] = session.config.stash[_UNTESTED]
+        output["sandbox_failures"] = session.config.stash[_FAILURES]
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any) -> None:
     """Take over what a process of xdist found that is not tested."""
-    node.config.stash[_UNTESTED].update(getattr(node, "workeroutput", {}).get("sandbox_untested", {}))
+    output = getattr(node, "workeroutput", {})
+    node.config.stash[_UNTESTED].update(output.get("sandbox_untested", {}))
+    node.config.stash[_FAILURES] += output.get("sandbox_failures", [])
 
 
 @pytest.fixture
@@ -189,8 +204,14 @@ def sandbox_session(request: pytest.FixtureRequest) -> "SandboxSession":
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
-    """Keep the runs of a test in Python that fails."""
+    """Keep the runs of a test in Python that fails, and what a page of all failures has of any."""
     report = yield
+    if report.failed and (item.config.getoption("--replay-report") or item.config.getoption("--replay-github")):
+        from sandbox.session.player.report import ReportedFailure
+
+        lines = [line for line in report.longreprtext.splitlines() if not is_of_here(line)]
+        found = getattr(call.excinfo.value, "found", None) if call.excinfo else None
+        item.config.stash[_FAILURES].append(astuple(ReportedFailure.of(item.nodeid, lines, found)))
     runs = item.stash.get(_RUNS, None)
     if runs and report.when == "call" and report.failed:
         reason = call.excinfo.exconly() if call.excinfo else ""
@@ -209,6 +230,24 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
 _updated: list[str] = []
 
 
+def _tell_failures(terminalreporter: Any, config: pytest.Config) -> None:
+    """Write the page of all failures, and tell GitHub of them."""
+    from sandbox.session.player.github import tell_github
+    from sandbox.session.player.report import ReportedFailure, write_report
+
+    failures = sorted((ReportedFailure(*each) for each in config.stash[_FAILURES]), key=lambda each: each.name)
+    stats = terminalreporter.stats
+    tests = sum(len(stats.get(kind, ())) for kind in ("passed", "failed", "error"))
+    page = config.getoption("--replay-report")
+    try:
+        lines = tell_github(failures, tests, config.rootpath) if config.getoption("--replay-github") else []
+        lines += [write_report(failures, tests, config.invocation_params.dir / page)] if page else []
+    except OSError as error:
+        lines = [f"{error.filename or page}: cannot be written: {error.strerror or error}"]
+    for line in lines:
+        terminalreporter.write_line(line)
+
+
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     """List the recordings that were recorded again, and what looks like a test and is none."""
     if _updated:
@@ -218,6 +257,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         for line in grouped(_updated):
             terminalreporter.write_line(line)
         _updated.clear()
+    if config.getoption("--replay-report") or config.getoption("--replay-github"):
+        _tell_failures(terminalreporter, config)
     untested = sorted(config.stash[_UNTESTED].items())
     if untested:
         terminalreporter.section("not tested")

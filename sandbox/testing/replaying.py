@@ -15,6 +15,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.writing import unfinished
 from sandbox.level.reading.files import LevelError, file_of, shipped_levels
 from sandbox.session.compare.comparison import Comparison, across_versions, compare, to_the_end
+from sandbox.session.level_edits import with_settings
 from sandbox.session.replay.nearest_level import NoLevelError, known_level, level_among, level_in, nearest
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
@@ -25,11 +26,10 @@ from sandbox.session.replay.rerecord import (
     missing_names,
     new_names,
     record_again,
-    with_settings,
 )
 from sandbox.session.solution import Proof
 from sandbox.testing.evidence import folder_of, name_of, pictures_of
-from sandbox.testing.files import SOLUTION, Failed, asked_renames, level_files, levels_around
+from sandbox.testing.files import SOLUTION, Failed, asked_renames, is_golden, level_files, levels_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -85,7 +85,7 @@ def replay_test(config: pytest.Config, path: Path) -> Update | None:
     if golden.is_renamed:
         raise _failed(config, golden, golden.rename_lines()[0], found)
     if found is not None:
-        raise _failed(config, golden, f"diverged: {found.cause()}", found)
+        raise _failed(config, golden, found.cause() if found.edits else f"diverged: {found.cause()}", found)
     return None
 
 
@@ -156,6 +156,7 @@ class _Golden:
         raise ReplayError(
             f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self.level_name} lacks{known}",
             rename_hint(config, self.path, missing[0]),
+            f"if it is gone for good, {_by_commands(config, self.path)}",
         )
 
 
@@ -174,16 +175,14 @@ def _golden(config: pytest.Config, path: Path) -> _Golden:
 def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Comparison | None) -> Failed:
     """A failure that says what was edited, how far the runs come apart, and how to accept it."""
     path = golden.path
-    failure = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
     lines = [*golden.rename_lines(), *(found.lines() if found else ["with these names every bit is equal"])]
-    # A single edit is in the headline already.
-    failure += [line for line in lines if not failure[0].endswith(f": {line}")]
+    # A single edit is the headline already.
+    failure = [headline, *(line for line in lines if line != headline)]
     smaller: list[str] = []
     if found and not golden.refused:
         smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
-    return Failed(
-        *failure, *(pictures_of(config, found, path) if found else []), *smaller, _way_out(config, golden, found)
-    )
+    pictures = pictures_of(config, found, path) if found else []
+    return Failed(*failure, *pictures, *smaller, _way_out(config, golden, found), found=found)
 
 
 def _named(config: pytest.Config, path: Path) -> str:
@@ -211,9 +210,14 @@ def _way_out(config: pytest.Config, golden: _Golden, found: Comparison | None) -
     path = golden.path
     if found is None or found.distance is None or "the new run ends" not in found.distance.stopped:
         return PLAY_AGAIN if golden.stops_winning() else acceptance(config, path)
+    return f"to accept, {_by_commands(config, path)}"
+
+
+def _by_commands(config: pytest.Config, path: Path) -> str:
+    """The way out where the commands of a recording do not fit the level any more."""
     commands = f"{_named(config, path).partition('.replay')[0]}.commands.jsonl"
     export = shlex.join(["sandbox", "export", _named(config, path), "--to", "commands", "-o", commands])
-    return f"to accept, edit its commands and record them again by `sandbox run --record`: {export}"
+    return f"edit its commands and record them again by `sandbox run --record`: {export}"
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
@@ -249,21 +253,22 @@ def _usual_level(config: pytest.Config, replay: Replay) -> Level | None:
     here, name = Path(replay.source).resolve(), file_of(replay.level)
     found = nearest({*(path.resolve() for path in level_files(config)), *levels_around(here, name)}, replay)
     if not found:
-        if not name or _is_shipped(replay.level):
+        if not name or _is_shipped(replay):
             return None
         raise Failed(
             f"{replay.source}: its level, {name} with the title {replay.level.name!r}, is neither beside it nor in a "
             "folder levels there or around, nor among sandbox_levels",
             "to run recordings on the copies that they hold: sandbox_against = own",
         )
-    if len(found) > 1 and any(replay.level == level_of(path) for path in found):
+    if len(found) > 1 and any(replay.level == replay.on(level_of(path)) for path in found):
         return replay.level
     return _read(level_among, found, replay, found[0].parent)
 
 
-def _is_shipped(level: Level) -> bool:
-    """Whether the level is as the program ships it."""
-    return any(path.name == file_of(level) and level_of(path) == level for path in shipped_levels())
+def _is_shipped(replay: Replay) -> bool:
+    """Whether the level of a recording is as the program ships it."""
+    level = replay.level
+    return any(path.name == file_of(level) and replay.on(level_of(path)) == level for path in shipped_levels())
 
 
 def level_of(path: Path) -> Level:
@@ -389,11 +394,12 @@ def grouped(texts: Iterable[str]) -> list[str]:
         most = max(updates, key=lambda each: each.farthest)
         names = sorted(each.name for each in updates)
         more = f" and {len(names) - RECORDINGS_NAMED} more" if len(names) > MOST_NAMED else ""
+        what = "golden file" if is_golden(Path(most.name)) else "recording"
         of = f" ({most.name})" if len(names) > 1 and most.farthest else ""
         lines += [
             *cause,
             f"  {most.effect}{of}",
             *(f"  {line}{of}" for line in most.checks),
-            f"  {len(names)} recording{'s' if len(names) > 1 else ''}: {', '.join(names[:RECORDINGS_NAMED])}{more}",
+            f"  {len(names)} {what}{'s' if len(names) > 1 else ''}: {', '.join(names[:RECORDINGS_NAMED])}{more}",
         ]
     return lines

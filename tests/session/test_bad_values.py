@@ -18,7 +18,6 @@ def right(session, folder):
         "attempt": {"record": {"type": "pin", "particle": "rope.4"}, "gesture": 5},
         "come_to": {"state": session.snapshot(), "lines": []},
         "do": {"command": "pin", "gesture": 5, "particle": "rope.4"},
-        "kept_before": {"tick": 3},
         "keyframes": {"first": 0, "last": 3},
         "record_to": {"path": path, "state_ticks": 30},
         "retold": {"tick": 3},

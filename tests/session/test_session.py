@@ -459,7 +459,7 @@ def test_a_script_ends_with_an_undoing_that_is_given_up(tmp_path):
     session.progress = _interrupt
     with pytest.raises(Interrupted):
         _advance(session, 60)
-    assert session.tick == 30 and session.can_undo and not session.scripted
+    assert session.tick == 30 and session.can_undo and session.history.scripted is None
     _advance(session, 5)
     assert session.tick == 35
 

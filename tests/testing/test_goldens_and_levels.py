@@ -105,7 +105,7 @@ def test_two_levels_of_one_title_are_told_apart_or_said(project):
 def test_a_renamed_body_is_told_and_carried_over(project):
     project.edit(lambda data: renamed(data, "rope", "chain"))
     code, told = project()
-    assert code == 1 and "a.replay.gz: swing.json: rope is called chain now\n" in told
+    assert code == 1 and "\nswing.json: rope is called chain now\n" in told
     assert "with these names every bit is equal\n" in told and "to accept: pytest --replay-update a.replay.gz" in told
     code, told = project("--replay-update")
     assert code == 0 and "swing.json: rope is called chain now\n  equal in every bit\n  2 recordings: " in told

@@ -64,7 +64,7 @@ def test_an_edited_level_is_seen_from_every_folder(start, arguments, game, pytes
         result.assert_outcomes(passed=2)
     else:
         result.assert_outcomes(failed=1, passed=whole - 1)
-        assert "diverged: rope.json: settings" in result.stdout.str()
+        assert "rope.json: settings" in result.stdout.str()
 
 
 def test_of_two_levels_of_one_name_the_nearest_counts(game, pytester):

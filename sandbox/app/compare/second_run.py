@@ -44,7 +44,7 @@ class TwinPlayback(Playback):
         """Run to a tick that the twin has got to."""
         self.apply_pending()
         session = self.session
-        if tick < session.tick or session.kept_before(min(tick, session.last_tick)) > session.tick:
+        if tick < session.tick or session.history.keyframes.before(min(tick, session.last_tick)).tick > session.tick:
             Playback.seek(self, min(tick, session.last_tick))
         while self.session.tick < tick:
             if self.session.tick == tick - 1:

@@ -293,7 +293,7 @@ class Playback:
         if self.session.tick != tick:
             return False
         self._end_what_goes_on(self.session.new_gesture())
-        self.session.forget_future()
+        self.session.history.drop_future(self.session.tick)
         return True
 
     def return_to(self, branch: Branch) -> None:

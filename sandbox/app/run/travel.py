@@ -49,7 +49,7 @@ class Travel:
         if self._replay is None:
             return None
         reached = self._session.last_tick
-        known = self._session.kept_before(min(tick, reached))
+        known = self._session.history.keyframes.before(min(tick, reached)).tick
         undoings = [line.tick for line in self._replay.script if line.record.get("type") in ("undo", "redo")]
         for stored in sorted((each for each in self._replay.states if known < each <= tick), reverse=True):
             first, last = min(stored, reached), max(stored, reached)

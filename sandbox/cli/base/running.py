@@ -11,7 +11,6 @@ from sandbox.terminal import Progress, interrupted_between_ticks
 if TYPE_CHECKING:
     from sandbox.level.assembly.build_world import LevelWorld
     from sandbox.physics.world import World
-    from sandbox.session.compare.comparison import Comparison
     from sandbox.session.player.page import Watched
     from sandbox.session.replay.recording import Replay
     from sandbox.session.session import Session
@@ -66,12 +65,3 @@ def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Re
         page = PlayerPage(name, *content, marks=command_marks(replay), happened=event_lines(runs, watches))
     page.write(path)
     return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.sides[0].ticks)} pictures"
-
-
-def write_report(found: "Comparison", path: Path) -> None:
-    """Write the page that plays the recorded run beside the one that diverged from it."""
-    from sandbox.session.player.page import report_page
-
-    with watching(2 * found.replay.ticks) as watched:
-        page = report_page(found, watched)
-    page.write(path)

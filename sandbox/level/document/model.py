@@ -339,8 +339,9 @@ class Level(Description):
 
     model_config = ConfigDict(serialize_by_alias=True)
     # The plan that its check made, for building its world. It is no field: not written, compared or copied.
-    # So are the name of the file that it was read from, and its rules as a run has them.
-    __slots__ = ("_file", "_plan", "_run_rules")
+    # So are the name of the file that it was read from, its rules as a run has them, and of settings that are not as in
+    # the file.
+    __slots__ = ("_file", "_plan", "_run_rules", "_run_with")
 
     schema_link: Line | None = Field(
         default=None,

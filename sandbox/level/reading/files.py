@@ -2,6 +2,7 @@
 
 import os
 import stat
+from collections.abc import Sequence
 from pathlib import Path
 
 from sandbox.level.document.canonical import level_data, level_text
@@ -23,6 +24,7 @@ __all__ = [
     "parse_level",
     "read_bytes",
     "read_level",
+    "run_with",
     "shipped_folder",
     "shipped_levels",
     "write_level",
@@ -37,14 +39,23 @@ def read_level(path: str | os.PathLike[str]) -> Level:
     return level
 
 
-def keep_file(level: Level, name: str) -> None:
-    """Store the name of a level's file in the level, for as long as the level lives; "": there is none."""
+def keep_file(level: Level, name: str, run_with: Sequence[str] = ()) -> None:
+    """Store the name of a level's file in the level, for as long as the level lives; "": there is none.
+
+    run_with: those of its settings that whoever runs it has chosen, in place of what the file says.
+    """
     object.__setattr__(level, "_file", name)
+    object.__setattr__(level, "_run_with", tuple(run_with))
 
 
 def file_of(level: Level) -> str:
     """The name of the file that a level was read from, without folders; "" for a copy of another level."""
     return getattr(level, "_file", "")
+
+
+def run_with(level: Level) -> tuple[str, ...]:
+    """The names of the settings that are not as the level's file has them, but as whoever runs it has chosen."""
+    return getattr(level, "_run_with", ())
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:

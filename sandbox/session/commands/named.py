@@ -34,7 +34,8 @@ class Named:
         try:
             return self.find(world, name)
         except (KeyError, ValueError):
-            near = suggestion(name, self.names(world))
+            others = world.particle_naming.second if self.kind == "particle" else ()
+            near = suggestion(name, [*(each for each, _ in others), *self.names(world)])
             raise CommandError(NO_SLOT.format(self.noun, shown(name)) + near) from None
 
     def check(self, world: World, slot: int) -> None:

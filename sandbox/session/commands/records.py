@@ -14,6 +14,9 @@ from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandErro
 from sandbox.session.commands.faults import NO_COMMAND, UNKNOWN, plain_fault
 from sandbox.session.commands.named import namespaces
 
+# Gestures that a script does not number are numbered by line from here, beyond those that it does.
+UNNUMBERED = 2**40
+
 
 @dataclass(frozen=True)
 class ScriptLine:

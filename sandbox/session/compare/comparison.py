@@ -3,6 +3,7 @@
 `verify` and `compare` run a recording again; `difference` takes any two recordings or levels.
 """
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -195,7 +196,7 @@ def recorded_run(replay: Replay, tick: int) -> Session | None:
 def _begun(replay: Replay, start: int, level: Level | None = None) -> Session:
     """A recording's commands from a tick whose state is stored, or from the beginning, perhaps of another level."""
     if start == 0:
-        return Session(level or replay.level, script=replay.script)
+        return Session(replay.on(level), script=replay.script)
     return Session(replay.level, script=replay.script, start=replay.state(start))
 
 
@@ -339,10 +340,14 @@ class ComparedRun:
         """Whether the recording is of another physics version, which cannot be run here as it was."""
         return self.replay is not None and not self.replay.is_of_this_physics
 
+    def beside(self, other: "ComparedRun") -> "ComparedRun":
+        """It, where it is a level with the settings that the other, a recording, was run with. Raises ReplayError."""
+        return self if self.replay or other.replay is None else replace(self, level=other.replay.on(self.level))
+
     def begin(self, other: "ComparedRun") -> Session:
         """A run of it from the beginning, where it has no commands with those of the other."""
         commands = self.replay or other.replay
-        return Session(self.level, script=commands.script if commands else ())
+        return Session(self.beside(other).level, script=commands.script if commands else ())
 
 
 @dataclass(frozen=True)
@@ -385,7 +390,7 @@ def difference(first: ComparedRun, second: ComparedRun, ticks: int, progress: Pr
 
     Of recordings the hashes are compared, and only levels are run, until two differ.
     """
-    sides = first, second
+    first, second = sides = first.beside(second), second.beside(first)
     ticks = min([ticks, *(side.replay.ticks for side in sides if side.replay is not None)])
     equal = RunDifference(edit_lines(first.level, second.level), _command_lines(sides, ticks), ticks)
     if first.is_old or second.is_old:
@@ -445,7 +450,7 @@ def _command_lines(sides: tuple[ComparedRun, ComparedRun], ticks: int) -> tuple[
         return ()
 
     def words(line: ScriptLine | None) -> str:
-        return "there is none" if line is None else f"tick {line.tick}: {line.record}"
+        return "there is none" if line is None else f"tick {line.tick}: {json.dumps(line.record)}"
 
     for number in range(max(map(len, scripts))):
         a, b = (script[number] if number < len(script) else None for script in scripts)

@@ -1,8 +1,8 @@
 """Trajectory distance: how far two runs come from each other, particle by particle, and whether that grows or heals."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,8 @@ class TrajectoryDistance:
 
     first: the first tick at which one is elsewhere, None: none ever is; heals: the tick from which on none is any more.
     farthest, particle, slots, tick: the largest distance, whose it is, by name and by slot in both runs, and when.
-    end: the largest distance at the last tick that was compared, last. course: the largest distance at some ticks.
+    end: the largest distance at the last tick that was compared, last. series: the largest distance at each tick that
+    was compared.
     alone: particles that one run alone has. stored: whether only the states that the recording stores were compared.
     stopped: why it ends early, or "". lines: what else there is to say of both runs, their checks and outcomes.
     """
@@ -52,7 +53,7 @@ class TrajectoryDistance:
     tick: int
     end: float
     last: int
-    course: tuple[tuple[int, float], ...]
+    series: tuple[tuple[int, float], ...]
     alone: int
     stored: bool
     stopped: str = ""
@@ -78,6 +79,18 @@ class TrajectoryDistance:
         return [
             str(self), *([alone] if self.alone else []), *self.lines, *([self.stopped] if self.stopped else [])
         ]  # fmt: skip
+
+    @property
+    def course(self) -> list[tuple[int, float]]:
+        """The largest distance at some ticks, from the first that differs to the last."""
+        begun = [each for each in self.series if self.first is not None and each[0] >= self.first]
+        places = sorted({round(part * (len(begun) - 1) / (COURSE - 1)) for part in range(COURSE)}) if begun else []
+        return [begun[place] for place in places]
+
+    def data(self) -> dict[str, Any]:
+        """All of it but the series, for JSON."""
+        known = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "series"}
+        return {**known, "course": self.course, "verdict": self.verdict()}
 
     def verdict(self) -> str:
         """Whether the distance shrinks or grows, with its value at some ticks on the way."""
@@ -257,17 +270,10 @@ def _measured(pairs: Iterable[tuple[World, World]], stored: bool) -> TrajectoryD
         tick=tick,
         end=series[-1] if series else 0.0,
         last=ticks[-1] if ticks else 0,
-        course=_course(ticks, series, different[0]) if different else (),
+        series=tuple(zip(ticks, series, strict=True)),
         alone=same.alone,
         stored=stored,
     )
-
-
-def _course(ticks: Sequence[int], series: Sequence[float], first: int) -> tuple[tuple[int, float], ...]:
-    """Some ticks from the first that differs to the last, with the distance at each."""
-    last = len(series) - 1
-    places = sorted({first + round(part * (last - first) / (COURSE - 1)) for part in range(COURSE)})
-    return tuple((ticks[place], series[place]) for place in places)
 
 
 class _WatchedRuns:

@@ -51,9 +51,7 @@ def roll_back(replay: Replay, back: int, level: Level | None = None, progress: P
     if back > replay.ticks:
         raise ReplayError(f"{replay.source}: a run of {replay.ticks} ticks does not go back {back} ticks")
     with faults_of(replay):
-        return _rolled_back(
-            Session(level or replay.level, script=replay.script), replay.ticks, back, lambda: None, progress
-        )
+        return _rolled_back(Session(replay.on(level), script=replay.script), replay.ticks, back, lambda: None, progress)
 
 
 def roll_back_level(level: Level, back: int, seed: int = 0, progress: Progress | None = None) -> RolledBack:

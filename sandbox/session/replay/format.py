@@ -7,8 +7,9 @@
                                                                        also "joined", where bodies joined while it ran
     {"end": true, "tick": 900, "hash": "...", "chain": "..."}
 
-The first line names the level's file in "level_file", where it was read from one. {"tick": 20, "written": [...]} names
-what a program wrote into the world by hand.
+The first line names the level's file in "level_file", where it was read from one, and in "run_with" the settings that
+are not as in that file, but as whoever ran it chose. {"tick": 20, "written": [...]} names what a program wrote into the
+world by hand.
 
 `hash` is of the whole state, `arrays` has a hash for each array; lines hold their first digits, but `hash` is whole at
 a stored state and at the end. `arrays` names the arrays that changed since the line before, with null for one that is
@@ -35,7 +36,7 @@ from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.assembly.joining import join_definition
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
-from sandbox.level.reading.files import file_of, level_data
+from sandbox.level.reading.files import file_of, level_data, run_with
 from sandbox.physics.keeping.arguments import check_corners, check_whole_numbers, room_of
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
@@ -109,6 +110,7 @@ def header(level: Level) -> dict[str, Any]:
         "sandbox_version": __version__,
         "level_sha256": level_digest(data),
         **({"level_file": file_of(level)} if file_of(level) else {}),
+        **({"run_with": run_with(level)} if run_with(level) else {}),
         "level": data,
     }
 

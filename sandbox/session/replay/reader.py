@@ -10,11 +10,11 @@ import zlib
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO, ClassVar, TypeVar, cast
+from typing import Annotated, Any, BinaryIO, ClassVar, Literal, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from sandbox.level.document.model import Level, Settings
+from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level, Settings
 from sandbox.level.format.foreign import CONFLICT, LFS_POINTER, scan
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
@@ -24,7 +24,7 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.faults import plain_fault
-from sandbox.session.commands.records import ScriptLine
+from sandbox.session.commands.records import UNNUMBERED, ScriptLine
 from sandbox.session.replay import FORMAT
 from sandbox.session.replay.format import CHAIN_DIGITS, TICK_DIGITS, VERSION, level_digest, unseal
 from sandbox.session.replay.recording import ByHand, OtherPhysicsError, Replay, ReplayError, StoredState, TickHashes
@@ -53,8 +53,6 @@ Digest = Annotated[str, Field(max_length=128)]
 SIZE_LIMIT = 32 * 2**20
 LINE_LIMIT = 250_000
 FAULT_LIMIT = 50  # that are told of one script
-# Gestures that a script does not number are numbered by line from here, beyond those that it does.
-UNNUMBERED = 2**40
 
 
 class Line(BaseModel):
@@ -86,6 +84,7 @@ class FirstLine(Sealed):
     sandbox_version: Digest
     level_sha256: Digest
     level_file: Annotated[str, Field(max_length=FILE_NAME_LIMIT)] = ""
+    run_with: tuple[Literal[CHANGEABLE_SETTINGS], ...] = ()  # type: ignore[valid-type]
     level: dict[str, Any]
 
 
@@ -185,7 +184,7 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
         raise ReplayError(f"{source}: line 1: cut off before its end, or no recording")
     head, digest = _read_header(source, first, retold)
     level = level_of(source, head)
-    keep_file(level, head.level_file)
+    keep_file(level, head.level_file, head.run_with)
     gathered = _RecordingReading(slots_of(level), version=head.version, retold=retold)
     number = 1
     for number in gathered.read(source, lines, each, digest, head.version):

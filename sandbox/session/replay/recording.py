@@ -14,7 +14,8 @@ import numpy as np
 
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import Level
-from sandbox.level.reading.files import file_of
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.reading.files import file_of, run_with
 from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Left, Snapshot, hash_by_array, leave, state_hash
@@ -22,7 +23,8 @@ from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
-from sandbox.session.commands.records import ScriptLine
+from sandbox.session.commands.records import UNNUMBERED, ScriptLine
+from sandbox.session.level_edits import with_settings
 from sandbox.session.replay.format import (
     ARRAY_DIGITS,
     STATE_LIMIT,
@@ -135,6 +137,20 @@ class Replay:
     def ticks(self) -> int:
         """Ticks recorded."""
         return len(self.hashes) - 1
+
+    def on(self, level: Level | None) -> Level:
+        """The level of a run of its commands: its own, or another with the settings that the recording was run with.
+
+        Raises ReplayError where the other cannot have them.
+        """
+        if level is None or level is self.level:
+            return self.level
+        names = [name for name in run_with(self.level) if name not in run_with(level)]
+        settings = {name: getattr(self.level.settings, name) for name in names}
+        try:
+            return with_settings(level, settings, self.source) if settings else level
+        except LevelError as error:
+            raise ReplayError(*error.faults) from None
 
     @property
     def compared(self) -> str:
@@ -305,6 +321,8 @@ def _lines(replay: Replay) -> Iterator[str]:
     name = file_of(replay.level)
     yield f"recording of {name + ', ' if name else ''}{json.dumps(replay.level.name, ensure_ascii=False)}"
     yield f"physics version {replay.physics_version}, recorded by version {replay.sandbox_version}"
+    chosen = [f"{each} {getattr(replay.level.settings, each)}" for each in run_with(replay.level)]
+    yield from [f"run with {', '.join(chosen)}"] if chosen else []
     yield ""
     yield "level"
     yield level_text(replay.level).rstrip("\n")
@@ -321,4 +339,5 @@ def _lines(replay: Replay) -> Iterator[str]:
 
 def _command_lines(replay: Replay) -> Iterator[str]:
     for line in replay.script:
-        yield json.dumps({"tick": line.tick, "gesture": line.gesture, "command": line.record}, ensure_ascii=False)
+        gesture = {"gesture": line.gesture} if line.gesture < UNNUMBERED else {}
+        yield json.dumps({"tick": line.tick, **gesture, "command": line.record}, ensure_ascii=False)

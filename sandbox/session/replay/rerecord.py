@@ -11,7 +11,7 @@ from typing import Any
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.plan.plan import Plan, kept_plan
-from sandbox.level.reading.files import file_of, keep_file, level_data, parse_level
+from sandbox.level.reading.files import file_of, keep_file, level_data, parse_level, run_with
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.command import COMMAND_TYPES
@@ -46,7 +46,7 @@ def record_again(replay: Replay, level: Level, path: Path) -> None:
     """
     stored = sorted(replay.states)
     apart = stored[1] - stored[0] if len(stored) > 2 else STATE_TICKS
-    session = Session(level, script=replay.script)
+    session = Session(replay.on(level), script=replay.script)
     session.record_to(path, apart)
     try:
         while session.tick < replay.ticks:
@@ -84,13 +84,6 @@ def resume(replay: Replay, ticks: int, progress: Callable[[int], object] | None 
         session.abandon_recording()
         part.unlink(missing_ok=True)
         raise
-
-
-def with_settings(level: Level, settings: Mapping[str, Any], source: str) -> Level:
-    """A level with other values of some of its settings, which source has given. Raises LevelError."""
-    data = level_data(level)
-    data["settings"] = {**data.get("settings", {}), **settings}
-    return parse_level(json.dumps(data).encode(), source)
 
 
 # Names of bodies and loose particles, old to new.
@@ -182,7 +175,7 @@ def _renamed_level(level: Level, renames: Renames) -> Level:
         found = parse_level(json.dumps(data).encode(), level.name)
     except LevelError:
         return level
-    keep_file(found, file_of(level))
+    keep_file(found, file_of(level), run_with(level))
     return found
 
 

@@ -225,7 +225,9 @@ def find_failure(replay: Replay, failure: Failure, level: Level | None = None) -
 
 def shrinker_of(replay: Replay, failure: Failure, level: Level | None = None) -> Shrinker:
     """A shrinker of what a recording did, on its own level or on another. Raises FailureError."""
-    return Shrinker(level or replay.level, Play(replay.script, replay.ticks), failure)
+    if isinstance(failure, Diverges):
+        failure = replace(failure, level=replay.on(failure.level))
+    return Shrinker(replay.on(level), Play(replay.script, replay.ticks), failure)
 
 
 def shrinker_against(replay: Replay, level: Level) -> Shrinker:

@@ -21,7 +21,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings
-from sandbox.session.replay.rerecord import with_settings
+from sandbox.session.level_edits import with_settings
 from sandbox.session.sweep.background import BackgroundSweep
 from sandbox.session.sweep.grid import CD, CS, Journal, Rows, SweepError, SweepGrid, read_table
 from sandbox.session.sweep.sweep_map import panel_values
