@@ -541,16 +541,11 @@ class EditScreen:
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """A line about what to do next, where the pointer is, and how large the level is."""
         scene, selection = self.scene, self.document.selection
-        parts: list[tuple[str, Colour]] = [
-            (TOOLS[self.tool].title, ACCENT),
-            (self.pointer_tool.hint, TEXT),
-        ]
-        errors = sum(finding.severity == "error" for finding in self.watch.findings)
-        warnings = sum(finding.severity == "warning" for finding in self.watch.findings)
-        if errors:
-            parts.append((f"{errors} {'error' if errors == 1 else 'errors'}", DANGER))
-        if warnings:
-            parts.append((f"{warnings} {'warning' if warnings == 1 else 'warnings'}", WARNING))
+        parts: list[tuple[str, Colour]] = [(TOOLS[self.tool].title, ACCENT), (self.pointer_tool.hint, TEXT)]
+        for severity, colour in (("error", DANGER), ("warning", WARNING)):
+            count = sum(finding.severity == severity for finding in self.watch.findings)
+            if count:
+                parts.append((f"{count} {severity}{'s' * (count != 1)}", colour))
         if self.watch.proving.text[0]:
             parts.append(self.watch.proving.text)
         if selection:
