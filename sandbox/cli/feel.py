@@ -12,7 +12,6 @@ from sandbox.terminal import seconds, share
 if TYPE_CHECKING:
     from sandbox.export.feel import Feel
     from sandbox.level.assembly.build_world import LevelWorld
-    from sandbox.physics.world import World
 
 # Seconds that a level runs before its thing is measured as it stands.
 BEFORE = 10.0
@@ -47,8 +46,8 @@ def feel(options: FeelOptions) -> int:
     """Print how a thing feels, or what makes it feel so. Raises Refused."""
     from sandbox.export.curves import card_page, card_picture, card_text, curve_for
     from sandbox.export.engines import NoSuchBody
+    from sandbox.export.release import NoCurve
     from sandbox.level.assembly.build_world import build_world
-    from sandbox.physics.analysis.release import NoCurve
     from sandbox.physics.step import step
 
     if (options.overshoot is None) != (options.settle is None):
@@ -80,7 +79,7 @@ def _found(options: FeelOptions, world: "LevelWorld") -> "tuple[Feel, str]":
     if options.particle is not None and options.particle not in world.particle_names:
         raise Refused(f"{options.level}: there is no particle called {options.particle}")
 
-    def measure(tried: "World") -> "Feel":
+    def measure(tried: "LevelWorld") -> "Feel":
         return feel_of(tried, options.thing, options.particle, options.way)
 
     if options.overshoot is None or options.settle is None:

@@ -171,7 +171,8 @@ def card_page(feel: Feel) -> str:
     """A page of its own that plays the curve by CSS: a box that moves with it, again and again by a click."""
     text = html.escape(card_text(feel))
     return f"""<!doctype html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(feel.name)}</title>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{html.escape(feel.name)}</title>
 <style>
 body {{ font: 15px/1.5 system-ui, sans-serif; max-width: 520px; margin: 32px auto; padding: 0 16px }}
 #box {{ width: 56px; height: 56px; border-radius: 12px; background: #c2410c; {_css(feel)} }}

@@ -1,4 +1,4 @@
-"""Feel: how a thing comes back when it is let go, in the words of those who design motion; and back from these to Cs, Cd.
+"""Feel: how a thing comes back when it is let go, in the words of those who design motion; and from these to Cs, Cd.
 
 The card has what is measured on the thing itself (release.py), the single spring that comes nearest to it, and how far
 apart both are. A curve is how far the way is done, 0 as it is let go and 1 in the end.
@@ -13,16 +13,24 @@ import numpy as np
 
 from sandbox.export.engines import choose_body
 from sandbox.export.numbers import percent, short
+from sandbox.export.release import NoCurve, StepResponse, particle_to_pull, release
 from sandbox.level.assembly.build_world import LevelWorld
-from sandbox.physics.analysis.release import NoCurve, Release, particle_to_pull, release
 from sandbox.physics.arrays import Floats
-from sandbox.physics.equation import HIGHEST_COEFFICIENT, coefficients_from_frequency, frequency_from_coefficients
+from sandbox.physics.equation import (
+    HIGHEST_COEFFICIENT,
+    coefficients_from_frequency,
+    frequency_from_coefficients,
+    highest_frequency,
+)
 from sandbox.physics.softness.body_motion import AT_REST, errors_of
 
 # Overshoots below this are none.
 UNSEEN = 0.002
-# Rounds in which a single spring is fitted to a curve, and in which Cs and Cd of a thing are sought.
-FITS, SOUGHT = 40, 10
+# Rounds in which a single spring is fitted to a curve, brought to an overshoot, and Cs and Cd of a thing are sought.
+FITS, ROUNDS, SOUGHT = 40, 12, 10
+# The highest frequency that is tried, as a share of the highest that there is, and in a tick; halvings until one
+# settles in time.
+HIGH, HIGHEST, BISECTIONS = 0.99, 0.4, 40
 # How far the search goes at once, in logarithms.
 FARTHEST = 1.5
 # How near a thing's curve comes to what is asked for, until that is enough.
@@ -31,8 +39,9 @@ NEAR = 0.01
 
 @dataclass(frozen=True)
 class Numbers:
-    """What a curve is in numbers: overshoot [1]; settling [s]: until no more than 2 % is left for good; swings: how often
-    it passes its place by more than that.
+    """What a curve is in numbers: overshoot [1]; settling [s]: until no more than 2 % is left for good.
+
+    swings: how often it passes its place by more than that.
     """
 
     overshoot: float
@@ -49,7 +58,7 @@ class Feel:
     """
 
     name: str
-    released: Release
+    released: StepResponse
     numbers: Numbers
     stiffness: float
     damping: float
@@ -78,17 +87,20 @@ def numbers_of(errors: Floats, tick: float) -> Numbers:
     before = abs(float(errors[last]))
     same_side = last + 1 < len(errors) and errors[last] * errors[last + 1] > 0.0
     share = (before - AT_REST) / (before - after if same_side else before + after) if before > AT_REST else 0.0
-    return Numbers(overshoot if overshoot > UNSEEN else 0.0, tick * (last + share), sum(abs(v) > AT_REST for v in peaks))
+    return Numbers(
+        overshoot if overshoot > UNSEEN else 0.0, tick * (last + share), sum(abs(v) > AT_REST for v in peaks)
+    )
 
 
 def _peaks(errors: Floats) -> list[float]:
-    # The turning points after the start: of parabolas through three ticks.
+    # The turning points after the start, of cosines about 0 through three ticks: parabolas cut quick swings short.
     found = []
     for k in range(1, len(errors) - 1):
         a, b, c = (float(v) for v in errors[k - 1 : k + 2])
         if (b - a) * (c - b) < 0.0 or (b == a != c and k > 1):
-            bend = a - 2.0 * b + c
-            found.append(b - (c - a) ** 2 / (8.0 * bend))
+            cosine = (a + c) / (2.0 * b) if abs(a + c) < 2.0 * abs(b) else 1.0
+            across = (c - a) / (2.0 * math.sqrt(1.0 - cosine * cosine)) if cosine < 1.0 else 0.0
+            found.append(math.copysign(math.hypot(b, across), b))
     return found
 
 
@@ -146,7 +158,7 @@ def feel_of(world: LevelWorld, body: str | None = None, particle: str | None = N
     return card_of(chosen.name, release(world, slot, along.tolist(), size))
 
 
-def card_of(name: str, released: Release) -> Feel:
+def card_of(name: str, released: StepResponse) -> Feel:
     """The card of what was measured. Raises NoCurve for what is rigid."""
     stiffness, damping = nearest_spring(released.errors)
     hz, ratio = frequency_from_coefficients(stiffness, damping, released.tick)
@@ -164,18 +176,32 @@ def pair_for(overshoot: float, settling: float, tick: float) -> tuple[float, flo
     """
     if not (0.0 <= overshoot < 1.0 and settling > 2.0 * tick):
         raise ValueError("an overshoot is from 0 up to 100 %, and settling takes more than two ticks")
-    # exp(-pi z / sqrt(1 - z^2)) of the overshoot; then the frequency that settles in time.
-    fall = -math.log(max(overshoot, UNSEEN)) / math.pi
-    ratio = fall / math.hypot(1.0, fall) if overshoot > UNSEEN else 1.0
-    hz = 1.0 / (ratio * settling)
-    for _ in range(60):
-        stiffness, damping = coefficients_from_frequency(hz, ratio, tick)
-        found = numbers_of(errors_of(stiffness, damping, _steps(settling, tick)), tick)
-        factor = found.settling / settling
-        if abs(factor - 1.0) < 1e-4:
+    asked, wanted = overshoot, (0.0, 0.0)
+    for _ in range(ROUNDS):
+        # exp(-pi z / sqrt(1 - z^2)) of the overshoot, which a spring in ticks misses by a little.
+        fall = -math.log(max(asked, UNSEEN)) / math.pi
+        wanted = _settling_in(settling, fall / math.hypot(1.0, fall) if overshoot > UNSEEN else 1.0, tick)
+        found = numbers_of(errors_of(*wanted, _steps(settling, tick)), tick).overshoot
+        if overshoot <= UNSEEN or abs(found - overshoot) < 1e-4 * overshoot:
             break
-        hz *= min(2.0, max(0.5, factor**0.7))
-    return stiffness, damping
+        asked = min(0.999, asked * overshoot / max(found, UNSEEN))
+    return wanted
+
+
+def _settling_in(settling: float, ratio: float, tick: float) -> tuple[float, float]:
+    # Cs and Cd of the spring of a damping ratio that settles in time: the higher its frequency, the sooner it does.
+    def settles(hz: float) -> float:
+        errors = errors_of(*coefficients_from_frequency(hz, ratio, tick), _steps(settling, tick))
+        return numbers_of(errors, tick).settling
+
+    low, high = 0.1 / settling, min(HIGH * highest_frequency(ratio, tick), HIGHEST / tick)
+    soonest = settles(high)
+    if soonest > settling:
+        raise ValueError(f"no spring that swings so far settles before {short(soonest)} s here")
+    for _ in range(BISECTIONS):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if settles(middle) > settling else (low, middle)
+    return coefficients_from_frequency(high, ratio, tick)
 
 
 def _steps(settling: float, tick: float) -> int:
@@ -185,8 +211,7 @@ def _steps(settling: float, tick: float) -> int:
 def sought(
     world: LevelWorld, overshoot: float, settling: float, measure: Callable[[LevelWorld], Feel]
 ) -> tuple[float, float, Feel]:  # fmt: skip
-    """Cs and Cd of all springs, of those tried, with which a thing comes nearest to an overshoot [1] and a settling time
-    [s], and its card then.
+    """Cs and Cd of all springs with which a thing comes nearest to an overshoot [1] and a settling [s]; its card then.
 
     measure: gives its card in a copy of the world. What a thing makes of Cs and Cd, as a single spring, is brought to
     what is wanted (Broyden 1965). Raises ValueError, NoCurve.

@@ -30,7 +30,7 @@ class NoCurve(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Release:
+class StepResponse:
     """How a thing came back: tick [s]; errors (n,): how far it is from its place, 1 as it is let go, tick by tick.
 
     particle: the slot that was pulled; way (2,): where to.
@@ -63,7 +63,7 @@ def particle_to_pull(world: World, particles: Slots) -> int:
     return int(free[np.argmax(nearest)])
 
 
-def release(world: World, particle: int, way: Sequence[float], size: float) -> Release:
+def release(world: World, particle: int, way: Sequence[float], size: float) -> StepResponse:
     """Pull a particle of a thing of a size [m] aside along a way, let it go, and see how it comes back.
 
     The world stays as it is. Raises NoCurve where it does not come back to its place.
@@ -83,9 +83,12 @@ def release(world: World, particle: int, way: Sequence[float], size: float) -> R
             took = len(errors) / world.settings.tick_rate
             if took >= MOST_SECONDS:
                 raise NoCurve(f"it still moves after {took:.0f} s, or something else does: let all come to rest first")
-            raise NoCurve(f"it does not come back: {100.0 * left:.0f} % of the way is left, at rest, after {took:.0f} s")
+            raise NoCurve(
+                f"it does not come back: {100.0 * left:.0f} % of the way is left, at rest, after {took:.0f} s"
+            )
     end = left * errors[0]
-    return Release(1.0 / world.settings.tick_rate, (errors - end) / (errors[0] - end), particle, tuple(along.tolist()))
+    shares = (errors - end) / (errors[0] - end)
+    return StepResponse(1.0 / world.settings.tick_rate, shares, particle, (float(along[0]), float(along[1])))
 
 
 def _window(world: World) -> int:
