@@ -38,6 +38,11 @@ def seconds(text: str) -> float:
     return _number(0.0, SECONDS_LIMIT, text)
 
 
+def share(text: str) -> float:
+    """A share, from 0 up to 1."""
+    return _number(0.0, 1.0, text)
+
+
 def rate(text: str) -> float:
     """Pictures a second."""
     return _number(1.0, RATE_LIMIT, text)

@@ -15,6 +15,7 @@ from sandbox.cli import (
     diff,
     edit,
     export,
+    feel,
     format,
     info,
     link,
@@ -43,7 +44,7 @@ COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     module.COMMAND
     for module in (
         play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, link,
-        open_link, take_home, export, bring, format, edit, schema,
+        open_link, take_home, feel, export, bring, format, edit, schema,
     )
 )  # fmt: skip
 # Values of options that begin as numbers below zero do, such as -1,-1,1,1.

@@ -1,0 +1,187 @@
+"""Curves: how a thing comes back, as the tools of those who design motion take it.
+
+Each in one of two forms: the curve as it was measured, in points, or the single spring that comes nearest.
+"""
+
+import html
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from sandbox.export.feel import Feel, sentence
+from sandbox.export.numbers import percent, short
+from sandbox.physics.arrays import Floats
+
+# How far the points of a curve may be from it, as a share of the way, and what is left when a curve ends.
+CLOSE, ENDED = 0.005, 0.002
+MEASURED, NEAREST = "the curve as it was measured", "the single spring that comes nearest"
+
+
+def points_of(feel: Feel) -> Floats:
+    """As few points (p, 2) of time [s] and progress as come near enough to the curve; from 0, 0 to 1 in the end."""
+    curve, tick = feel.curve, feel.released.tick
+    beyond = np.flatnonzero(np.abs(1.0 - curve) > ENDED)
+    end = min(int(beyond[-1]) + 1, len(curve) - 1)
+    y = np.append(curve[:end], 1.0)
+    y[0] = 0.0
+    kept, at = [0], 0
+    while at < end:
+        at = max(to for to in range(at + 1, end + 1) if to == at + 1 or _is_straight(y, at, to))
+        kept.append(at)
+    return np.stack([tick * np.array(kept), y[kept]], axis=1)
+
+
+def _is_straight(y: Floats, first: int, last: int) -> bool:
+    between = np.linspace(y[first], y[last], last - first + 1)
+    return bool(np.max(np.abs(between - y[first : last + 1])) <= CLOSE)
+
+
+def _natural(feel: Feel) -> tuple[float, float]:
+    # Natural frequency [rad/s], and damping ratio, of the nearest spring.
+    if not math.isfinite(feel.hz) or feel.hz <= 0.0:
+        raise ValueError("it comes back within one tick: no spring of those tools is as quick")
+    return 2.0 * math.pi * feel.hz, feel.ratio
+
+
+def _css(feel: Feel) -> str:
+    points = points_of(feel)
+    last = points[-1, 0]
+    stops = [f"{_n(value)} {_n(100.0 * time / last)}%" for time, value in points[1:-1].tolist()]
+    return f"transition: transform {round(1000.0 * last)}ms linear({', '.join(['0', *stops, '1'])});"
+
+
+def _swiftui(feel: Feel) -> str:
+    omega, ratio = _natural(feel)
+    bounce = 1.0 - ratio if ratio <= 1.0 else 1.0 / ratio - 1.0
+    return f".animation(.spring(duration: {_n(2.0 * math.pi / omega)}, bounce: {_n(bounce)}), value: value)"
+
+
+def _flutter(feel: Feel) -> str:
+    omega, ratio = _natural(feel)
+    return f"SpringDescription(mass: 1, stiffness: {_n(omega * omega)}, damping: {_n(2.0 * ratio * omega)})"
+
+
+def _motion(feel: Feel) -> str:
+    omega, ratio = _natural(feel)
+    return f'{{ type: "spring", mass: 1, stiffness: {_n(omega * omega)}, damping: {_n(2.0 * ratio * omega)} }}'
+
+
+def _react_spring(feel: Feel) -> str:
+    omega, ratio = _natural(feel)
+    return f"config: {{ mass: 1, tension: {_n(omega * omega)}, friction: {_n(2.0 * ratio * omega)} }}"
+
+
+def _unity(feel: Feel) -> str:
+    points = points_of(feel)
+    keys = [f"    new Keyframe({_n(time)}f, {_n(value)}f)" for time, value in points.tolist()]
+    return (
+        "var curve = new AnimationCurve(\n" + ",\n".join(keys) + ");\n"
+        "for (int i = 0; i < curve.length; i++) {\n"
+        "    AnimationUtility.SetKeyLeftTangentMode(curve, i, AnimationUtility.TangentMode.Linear);\n"
+        "    AnimationUtility.SetKeyRightTangentMode(curve, i, AnimationUtility.TangentMode.Linear);\n"
+        "}"
+    )
+
+
+def _godot(feel: Feel) -> str:
+    points = points_of(feel)
+    low, high = float(points[:, 1].min()), float(points[:, 1].max())
+    head = [
+        f"# seconds: {_n(points[-1, 0])}", "var curve := Curve.new()", f"curve.min_value = {_n(low)}",
+        f"curve.max_value = {_n(high)}",
+    ]  # fmt: skip
+    linear = "0.0, 0.0, Curve.TANGENT_LINEAR, Curve.TANGENT_LINEAR"
+    return "\n".join(
+        head
+        + [f"curve.add_point(Vector2({_n(t / points[-1, 0])}, {_n(value)}), {linear})" for t, value in points.tolist()]
+    )
+
+
+def _n(value: float) -> str:
+    return f"{value:.4f}".rstrip("0").rstrip(".")
+
+
+# By the name of a tool: which of the two forms it takes, and the text.
+TOOLS: dict[str, tuple[str, Callable[[Feel], str]]] = {
+    "css": (MEASURED, _css),
+    "unity": (MEASURED, _unity),
+    "godot": (MEASURED, _godot),
+    "swiftui": (NEAREST, _swiftui),
+    "flutter": (NEAREST, _flutter),
+    "motion": (NEAREST, _motion),
+    "react-spring": (NEAREST, _react_spring),
+}
+
+
+def curve_for(feel: Feel, tool: str) -> str:
+    """The text for a tool, by its name in TOOLS. Raises KeyError, and ValueError where it has no such spring."""
+    form, write = TOOLS[tool]
+    text = write(feel)
+    apart = f"; {percent(feel.difference)} of the way from what was measured" if form == NEAREST else ""
+    return f"{form}{apart}:\n{text}\n"
+
+
+def card_text(feel: Feel) -> str:
+    """The card of a thing as text for a person."""
+    numbers, released = feel.numbers, feel.released
+    swings = f"{numbers.swings} time{'s' * (numbers.swings != 1)}"
+    spring = (
+        f"{short(feel.hz)} Hz, damping ratio {short(feel.ratio)}"
+        if math.isfinite(feel.hz)
+        else "quicker than one tick shows"
+    )
+    return "\n".join(
+        [
+            f'"{feel.name}", pulled aside and let go. {sentence(feel)}',
+            f"  overshoot {percent(numbers.overshoot)}, settles in {short(numbers.settling)} s, seen to pass its place "
+            f"{swings}",
+            f"  nearest single spring: {spring} (Cs {short(feel.stiffness)}, Cd {short(feel.damping)} in a tick of "
+            f"1/{round(1.0 / released.tick)} s), {percent(feel.difference)} of the way apart at most",
+        ]
+    )
+
+
+def card_picture(feel: Feel) -> str:
+    """The curve, and that of the nearest spring, as a picture (SVG)."""
+    width, height, left, bottom = 480.0, 240.0, 44.0, 30.0
+    points, spring = points_of(feel), feel.spring_curve
+    last, top = float(points[-1, 0]), max(1.05, float(points[:, 1].max()) + 0.05)
+
+    def place(time: float, value: float) -> str:
+        x, y = left + (width - left - 12) * time / last, height - bottom - (height - bottom - 12) * value / top
+        return f"{x:.1f},{y:.1f}"
+
+    count = min(len(spring), round(last / feel.released.tick) + 1)
+    measured = " ".join(place(time, value) for time, value in points.tolist())
+    single = " ".join(place(k * feel.released.tick, float(spring[k])) for k in range(count))
+    one = place(0.0, 1.0).split(",")[1]
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" font-family="sans-serif" '
+        f'font-size="11"><title>{html.escape(sentence(feel))}</title><rect width="{width:g}" height="{height:g}" '
+        f'fill="#fff"/><path d="M{left:g} {one}H{width - 12:g}" stroke="#bbb"/>'
+        f'<polyline points="{single}" fill="none" stroke="#0e7490" stroke-dasharray="4 3"/>'
+        f'<polyline points="{measured}" fill="none" stroke="#c2410c" stroke-width="2"/>'
+        f'<text x="{width - 12:g}" y="{height - 10:g}" text-anchor="end">{short(last)} s</text>'
+        f'<text x="4" y="{one}">1</text></svg>\n'
+    )
+
+
+def card_page(feel: Feel) -> str:
+    """A page of its own that plays the curve by CSS: a box that moves with it, again and again by a click."""
+    text = html.escape(card_text(feel))
+    return f"""<!doctype html>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{html.escape(feel.name)}</title>
+<style>
+body {{ font: 15px/1.5 system-ui, sans-serif; max-width: 520px; margin: 32px auto; padding: 0 16px }}
+#box {{ width: 56px; height: 56px; border-radius: 12px; background: #c2410c; {_css(feel)} }}
+#box.there {{ transform: translateX(240px) }}
+pre {{ white-space: pre-wrap; overflow-wrap: anywhere; background: #f4f4f5; padding: 12px; border-radius: 8px }}
+svg {{ width: 100% }}
+</style>
+<div id="box"></div><p><button id="go">Again</button></p>
+<pre>{text}</pre>
+{card_picture(feel)}<pre>{html.escape(_css(feel))}</pre>
+<script>document.getElementById("go").onclick = () => document.getElementById("box").classList.toggle("there")</script>
+"""

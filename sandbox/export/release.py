@@ -1,0 +1,130 @@
+"""Release: how a thing comes back that is pulled aside and let go, measured in a copy of its world.
+
+One particle is held a little aside until all rests, and let go; how far it is from its place, as a share of the first,
+is the curve. A second copy, in which nothing is pulled, says where its place is: what moves by itself does not count.
+"""
+
+import copy
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.components import label_linked
+from sandbox.physics.step import step
+from sandbox.physics.world import World
+
+# Pulls that are tried, as shares of the thing's size: as a finger pokes, then so little that nothing slips or yields.
+PULLS = (0.01, 1e-4)
+# Longest wait for all to rest before the pull and while it lasts, and longest curve [s].
+MOST_BEFORE, MOST_HELD, MOST_SECONDS = 10.0, 10.0, 30.0
+# It rests once nothing of it moves further in a second than this share of the pull; so does the curve.
+AT_REST = 1e-3
+# What does not come back within this share of the pull has been moved for good.
+LEFT = 0.05
+
+
+class NoCurve(ValueError):
+    """A thing does not come back, or nothing holds it; its text is one line for a person."""
+
+
+@dataclass(frozen=True, eq=False)
+class StepResponse:
+    """How a thing came back: tick [s]; errors (n,): how far it is from its place, 1 as it is let go, tick by tick.
+
+    particle: the slot that was pulled; way (2,): where to.
+    """
+
+    tick: float
+    errors: Floats
+    particle: int
+    way: tuple[float, float]
+
+
+def particle_to_pull(world: World, particles: Slots) -> int:
+    """The slot among a thing's that is farthest from all that holds it: pins that it is joined to, and what it lies on.
+
+    Raises NoCurve where nothing holds it, or nothing of it is free.
+    """
+    free = particles[world.inverse_mass[particles] > 0.0]
+    if not len(free):
+        raise NoCurve("nothing of it is free to move")
+    label = np.arange(world.particle_count)
+    springs = np.flatnonzero(world.spring_active)
+    label_linked(world.particle_a[springs].astype(np.int64), world.particle_b[springs].astype(np.int64), label)
+    joined = np.flatnonzero(np.isin(label, label[particles]))
+    held = joined[world.inverse_mass[joined] == 0.0]
+    holders = np.concatenate([held, np.intersect1d(joined, world.contact_particle)])
+    if not len(holders):
+        raise NoCurve("nothing holds it: pin it, or let it lie on something first")
+    places, ends = world.position[free], world.position[holders]
+    nearest = np.min(np.sum((places[:, None] - ends[None]) ** 2, axis=2), axis=1)
+    return int(free[np.argmax(nearest)])
+
+
+def release(world: World, particle: int, way: Sequence[float], size: float) -> StepResponse:
+    """Pull a particle of a thing of a size [m] aside along a way, let it go, and see how it comes back.
+
+    The world stays as it is. Raises NoCurve where it does not come back to its place.
+    """
+    length = float(np.hypot(way[0], way[1]))
+    if not length > 0.0 or not size > 0.0:
+        raise NoCurve("it has no size, or the way to pull it has no length")
+    along = np.asarray(way, float) / length
+    rested = copy.deepcopy(world)
+    _run((rested,), lambda: float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size, MOST_BEFORE)
+    for last, share in enumerate(PULLS, 1 - len(PULLS)):
+        errors = _pulled(rested, particle, along, share * size)
+        left = float(np.mean(errors[-_window(world) :])) / errors[0]
+        if abs(left) <= LEFT:
+            break
+        if last == 0:
+            took = len(errors) / world.settings.tick_rate
+            if took >= MOST_SECONDS:
+                raise NoCurve(f"it still moves after {took:.0f} s, or something else does: let all come to rest first")
+            raise NoCurve(
+                f"it does not come back: {100.0 * left:.0f} % of the way is left, at rest, after {took:.0f} s"
+            )
+    end = left * errors[0]
+    shares = (errors - end) / (errors[0] - end)
+    return StepResponse(1.0 / world.settings.tick_rate, shares, particle, (float(along[0]), float(along[1])))
+
+
+def _window(world: World) -> int:
+    return max(2, world.settings.tick_rate // 2)
+
+
+def _run(worlds: Sequence[World], rests: Callable[[], bool], seconds: float) -> None:
+    """Ticks until all rests, three times in a row, or for so long [s]."""
+    resting = 0
+    for _ in range(round(seconds * worlds[0].settings.tick_rate)):
+        for world in worlds:
+            step(world)
+        resting = resting + 1 if rests() else 0
+        if resting >= 3:
+            break
+
+
+def _pulled(rested: World, particle: int, along: Floats, pull: float) -> Floats:
+    # How far a particle [m] is from where it would be without a pull, tick by tick from when it is let go.
+    still, pulled = copy.deepcopy(rested), copy.deepcopy(rested)
+    pulled.change("position", pulled.position[particle] + pull * along, particle)
+    pulled.change("velocity", (0.0, 0.0), particle)
+    pulled.pin(particle)
+
+    def rests() -> bool:
+        return float(np.max(np.abs(pulled.velocity - still.velocity), initial=0.0)) <= AT_REST * pull
+
+    _run((still, pulled), rests, MOST_HELD)
+    pulled.unpin(particle)
+    errors = [float((pulled.position[particle] - still.position[particle]) @ along)]
+    window = _window(rested)
+    for _ in range(round(MOST_SECONDS * rested.settings.tick_rate)):
+        step(still)
+        step(pulled)
+        errors.append(float((pulled.position[particle] - still.position[particle]) @ along))
+        recent = errors[-window:]
+        if len(errors) > window and max(recent) - min(recent) <= AT_REST * pull:
+            break
+    return np.array(errors)
