@@ -29,6 +29,10 @@ unpack = interpreted.unpack
 Bundle = interpreted.Bundle
 # In kernels: set a field of a named tuple in a bundle to another array, or named tuple of arrays.
 set_field: Any = interpreted.set_field
+# In kernels: the head of a loop whose items threads may share, parallel(items, work). Its body is one call of a kernel,
+# which writes what is its item's alone; what items find together is summed afterwards. work: about as many
+# multiplications as there are in all, which alone decide whether a loop is worth sharing.
+parallel: Any = interpreted.parallel
 # In kernels: arrays in the memory of another, an int64 array, from an item on; (memory, first, rows) or, for rows of
 # some width, (memory, first, rows, width).
 slots_in: Any = interpreted.slots_in
@@ -44,9 +48,13 @@ ArenaLayout = interpreted.ArenaLayout
 _PLAIN = (FunctionType, BuiltinFunctionType)
 _WAYS = ("library", "generic", "checked", "interpreted")
 _WISH = "SANDBOX_KERNELS"
+_THREADS = "SANDBOX_THREADS"
+MOST_THREADS = 8
 # The module that makes kernels, and how they run.
 _maker: Any = None
 _way = ""
+# Threads that share loops; 0: not chosen yet.
+_threads = 0
 _making = threading.RLock()
 
 
@@ -134,6 +142,7 @@ def _choose(wish: str) -> Any:
             wish = "interpreted"
     _way = wish
     _maker = importlib.import_module(f"{__name__}.{'interpreted' if wish == 'interpreted' else 'library'}")
+    _maker.use_threads(threads())
     COMPILED = _maker.COMPILED
     return _maker
 
@@ -146,6 +155,39 @@ def way() -> str:
     """How kernels run in this process: "library", "generic", "checked" or "interpreted"."""
     _chosen()
     return _way
+
+
+def threads() -> int:
+    """How many threads share the loops of a tick: as chosen, by SANDBOX_THREADS, or one less than there are cores."""
+    global _threads
+    if not _threads:
+        wish = os.environ.get(_THREADS, "")
+        if wish.isdecimal() and 1 <= int(wish) <= MOST_THREADS:
+            _threads = int(wish)
+        else:
+            if wish:
+                say(f"{_THREADS} is a number from 1 to {MOST_THREADS}, not {wish!r}: it is left out")
+            _threads = max(1, min(cores() - 1, MOST_THREADS))
+    return _threads
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def use_threads(count: int) -> None:
+    """Let so many threads share the loops of a tick; the bits are the same with any number.
+
+    Raises:
+        ValueError: for a number that is not from 1 to MOST_THREADS.
+    """
+    global _threads
+    if not 1 <= count <= MOST_THREADS:
+        raise ValueError(f"{count} threads: a number from 1 to {MOST_THREADS} is wanted")
+    _threads = count
+    if _maker is not None:
+        _maker.use_threads(count)
 
 
 def __getattr__(name: str) -> Any:
