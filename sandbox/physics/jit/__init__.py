@@ -50,6 +50,8 @@ _WAYS = ("library", "generic", "checked", "interpreted")
 _WISH = "SANDBOX_KERNELS"
 _THREADS = "SANDBOX_THREADS"
 MOST_THREADS = 8
+# Multiplications of a loop that threads share: with fewer, to hand them out costs more than it saves.
+WORTH_SHARING = 300_000
 # The module that makes kernels, and how they run.
 _maker: Any = None
 _way = ""
@@ -142,7 +144,7 @@ def _choose(wish: str) -> Any:
             wish = "interpreted"
     _way = wish
     _maker = importlib.import_module(f"{__name__}.{'interpreted' if wish == 'interpreted' else 'library'}")
-    _maker.use_threads(threads())
+    _maker.use_threads(threads(), WORTH_SHARING)
     COMPILED = _maker.COMPILED
     return _maker
 
@@ -176,8 +178,10 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def use_threads(count: int) -> None:
+def use_threads(count: int, worth: int = WORTH_SHARING) -> None:
     """Let so many threads share the loops of a tick; the bits are the same with any number.
+
+    worth: multiplications of a loop that is shared.
 
     Raises:
         ValueError: for a number that is not from 1 to MOST_THREADS.
@@ -187,7 +191,12 @@ def use_threads(count: int) -> None:
         raise ValueError(f"{count} threads: a number from 1 to {MOST_THREADS} is wanted")
     _threads = count
     if _maker is not None:
-        _maker.use_threads(count)
+        _maker.use_threads(count, worth)
+
+
+def threads_started() -> int:
+    """Threads beside those of Python that were started in this process."""
+    return int(_chosen().threads_started())
 
 
 def __getattr__(name: str) -> Any:

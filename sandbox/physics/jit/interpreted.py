@@ -75,8 +75,13 @@ def hold(bundle: Any, memory: Any) -> None:
     """Do nothing: the views of a bundle keep their arrays alive."""
 
 
-def use_threads(count: int) -> None:
+def use_threads(count: int, worth: int) -> None:
     """Do nothing: loops are run in turn."""
+
+
+def threads_started() -> int:
+    """None: loops are run in turn."""
+    return 0
 
 
 def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:

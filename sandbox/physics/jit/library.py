@@ -101,9 +101,9 @@ class Library:
         """Whether the processor runs libraries for x86-64 level v3 too."""
         return bool(self._code.runs_wide())
 
-    def use_threads(self, count: int) -> None:
-        """Let so many threads share loops, the caller among them."""
-        self._code.use_threads(ctypes.c_int64(count))
+    def use_threads(self, count: int, worth: int) -> None:
+        """Let so many threads share loops of so many multiplications, the caller among them."""
+        self._code.use_threads(ctypes.c_int64(count), ctypes.c_int64(worth))
 
     @property
     def threads_started(self) -> int:
@@ -244,9 +244,14 @@ def make(kernel: Any) -> Any:
     return library.function(kernel.name) if kernel.name in library.entries else interpreted.make(kernel)
 
 
-def use_threads(count: int) -> None:
-    """Let so many threads share loops, the caller among them."""
-    open_library().use_threads(count)
+def use_threads(count: int, worth: int) -> None:
+    """Let so many threads share loops of so many multiplications, the caller among them."""
+    open_library().use_threads(count, worth)
+
+
+def threads_started() -> int:
+    """Threads beside callers that were started, in this process."""
+    return open_library().threads_started
 
 
 bundle, hold, items_of = bundles.bundle, bundles.hold, bundles.items_of

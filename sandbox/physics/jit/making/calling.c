@@ -131,6 +131,9 @@ static struct {
     void *go[MOST_THREADS];
 } pool;
 
+/* Multiplications of a loop that is shared. */
+Word worth_sharing = (Word)(~0ull >> 1);
+
 static void pause_a_little(void) {
 #if defined(__x86_64__)
     __asm__ volatile("pause");
@@ -163,9 +166,10 @@ static void work_on(void *place) {
     }
 }
 
-/* How many threads share loops, the caller among them; they start when a loop is first worth it. */
-SHARED void use_threads(Word count) {
+/* How many threads share loops of so many multiplications, the caller among them; they start with the first loop. */
+SHARED void use_threads(Word count, Word worth) {
     pool.wanted = count < 1 ? 0 : count > MOST_THREADS ? MOST_THREADS - 1 : count - 1;
+    worth_sharing = pool.wanted ? worth : (Word)(~0ull >> 1);
 }
 
 /* Threads beside callers that were started. */

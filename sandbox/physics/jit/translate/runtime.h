@@ -89,14 +89,14 @@ template <class T, int dimensions> static Array<T, dimensions> cut(Array<T, dime
     return array;
 }
 
-// Loops whose items threads may share. Below so many multiplications handing them out costs more than it saves.
-#define WORTH_SHARING 200000
+// Loops whose items threads may share, where they have so many multiplications.
 #if !defined(__wasm__)
+extern "C" int64_t worth_sharing;
 extern "C" void share(int64_t items, void (*run)(const void *what, int64_t item), const void *what);
 #endif
 template <class F> static void parallel(int64_t items, int64_t work, const F &body) {
 #if !defined(__wasm__)
-    if (items > 1 && work >= WORTH_SHARING) {
+    if (items > 1 && work >= worth_sharing) {
         share(items, [](const void *what, int64_t item) { (*(const F *)what)(item); }, &body);
         return;
     }
