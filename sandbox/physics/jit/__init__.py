@@ -55,8 +55,8 @@ WORTH_SHARING = 300_000
 # The module that makes kernels, and how they run.
 _maker: Any = None
 _way = ""
-# Threads that share loops; 0: not chosen yet.
-_threads = 0
+# Threads that share loops, 0: not chosen yet; and of how many multiplications.
+_threads, _worth = 0, WORTH_SHARING
 _making = threading.RLock()
 
 
@@ -144,7 +144,7 @@ def _choose(wish: str) -> Any:
             wish = "interpreted"
     _way = wish
     _maker = importlib.import_module(f"{__name__}.{'interpreted' if wish == 'interpreted' else 'library'}")
-    _maker.use_threads(threads(), WORTH_SHARING)
+    _maker.use_threads(threads(), _worth)
     COMPILED = _maker.COMPILED
     return _maker
 
@@ -186,10 +186,10 @@ def use_threads(count: int, worth: int = WORTH_SHARING) -> None:
     Raises:
         ValueError: for a number that is not from 1 to MOST_THREADS.
     """
-    global _threads
+    global _threads, _worth
     if not 1 <= count <= MOST_THREADS:
         raise ValueError(f"{count} threads: a number from 1 to {MOST_THREADS} is wanted")
-    _threads = count
+    _threads, _worth = count, worth
     if _maker is not None:
         _maker.use_threads(count, worth)
 
