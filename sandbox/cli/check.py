@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED
-from sandbox.terminal import Progress, cores, count, processes, tell
+from sandbox.processors import cores
+from sandbox.terminal import Progress, count, processes, tell
 
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
 LEVELS_PER_PROCESS = 4

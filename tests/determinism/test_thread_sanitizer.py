@@ -1,4 +1,4 @@
-"""Goldens under the sanitizer of threads: kernels are compiled by g++, since zig has no sanitizer that a process loads."""
+"""Goldens under the sanitizer of threads: g++ compiles kernels, since zig has none that a process loads."""
 
 import json
 import os

@@ -18,7 +18,6 @@ from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.physics import jit
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.pipeline.block_owner import block_of
-from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.linear import elimination, fronts
 from tests.bench import scenes

@@ -20,6 +20,7 @@ from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 from sandbox.physics.jit import interpreted
+from sandbox.processors import cores
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -160,22 +161,27 @@ def way() -> str:
 
 
 def threads() -> int:
-    """How many threads share the loops of a tick: as chosen, by SANDBOX_THREADS, or one less than there are cores."""
+    """How many threads share the loops of a tick."""
     global _threads
     if not _threads:
-        wish = os.environ.get(_THREADS, "")
-        if wish.isdecimal() and 1 <= int(wish) <= MOST_THREADS:
-            _threads = int(wish)
-        else:
-            if wish:
-                say(f"{_THREADS} is a number from 1 to {MOST_THREADS}, not {wish!r}: it is left out")
-            _threads = max(1, min(cores() - 1, MOST_THREADS))
+        _threads = usual_threads()
     return _threads
 
 
-def cores() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+def usual_threads() -> int:
+    """How many share them until another number is chosen: by SANDBOX_THREADS, or one less than there are cores."""
+    wish = os.environ.get(_THREADS, "")
+    if wish.isdecimal() and 1 <= int(wish) <= MOST_THREADS:
+        return int(wish)
+    if wish:
+        say(f"{_THREADS} is a number from 1 to {MOST_THREADS}, not {wish!r}: it is left out")
+    return max(1, min(cores() - 1, MOST_THREADS))
+
+
+def work_beside_others() -> None:
+    """Share no loop in this process, one of several that work at once, unless SANDBOX_THREADS says so."""
+    os.environ.setdefault(_THREADS, "1")
+    use_threads(usual_threads())
 
 
 def use_threads(count: int, worth: int = WORTH_SHARING) -> None:

@@ -37,8 +37,8 @@ from sandbox.physics.solvers.linear import fronts as multifrontal
 from sandbox.physics.solvers.linear.elimination import (
     BODIES,
     BORDERS,
-    FRONTS,
     DIVIDED,
+    FRONTS,
     SMALL,
     WIDEST_NARROW,
     Dissection,
@@ -184,8 +184,9 @@ def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, 
     set_field(out, "fronts", fronts)
     set_field(out, "matrix", matrix)
     # All that follows is ready for a step; of wide constraints a body has most_wide at most.
+    work = work_of_bodies(bodies, made.first_row, fronts, matrix, arena)
     blocks_of_rows = new_tuple(
-        Bodies, arena, work=work_of_bodies(bodies, made.first_row, fronts, matrix, arena), row_start=places.row_start, spring_start=places.spring_start,
+        Bodies, arena, work=work, row_start=places.row_start, spring_start=places.spring_start,
         constraint_start=places.constraint_start, lowest=places.lowest, pivot=places.pivot, anchored=places.anchored,
         bodies=places.lowest.shape[0],
     )  # fmt: skip
