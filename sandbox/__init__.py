@@ -26,6 +26,7 @@ _HOME = {
     "state_hash": "sandbox.physics.snapshot",
     "step": "sandbox.physics.step",
     "Session": "sandbox.session.session",
+    "use_threads": "sandbox.physics.jit",
     "run_checks": "sandbox.session.check_run",
     "Replay": "sandbox.session.replay.recording",
 }
@@ -49,6 +50,7 @@ __all__ = [
     "run_checks",
     "state_hash",
     "step",
+    "use_threads",
 ]
 
 if TYPE_CHECKING:
@@ -58,6 +60,7 @@ if TYPE_CHECKING:
     from sandbox.level.reading.files import load_level
     from sandbox.level.things.contacts import Contact, ContactEvents, ContactListener, contacts
     from sandbox.level.things.outlines import ThingOutline, outlines
+    from sandbox.physics.jit import use_threads
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step

@@ -166,11 +166,6 @@ def tell(lines: Iterable[str]) -> None:
         print("".join(c if c.isprintable() else repr(c)[1:-1] for c in line), file=sys.stderr)
 
 
-def cores() -> int:
-    """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 class Progress:
     """A bar on standard error where a person looks at it."""
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused
-from sandbox.terminal import Progress, cores, count, processes, tell
+from sandbox.processors import cores
+from sandbox.terminal import Progress, count, processes, tell
 
 if TYPE_CHECKING:
     from sandbox.session.checking import LevelReport

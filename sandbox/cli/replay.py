@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 from sandbox.cli.base.command import Subcommand, arguments, flag, option
 from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
 from sandbox.cli.base.running import PAGE, watching
-from sandbox.terminal import Progress, cores, count, processes, shortened, tell
+from sandbox.processors import cores
+from sandbox.terminal import Progress, count, processes, shortened, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level

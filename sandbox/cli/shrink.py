@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.base.command import Subcommand, argument, flag, option
 from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of, recording_of
+from sandbox.processors import cores
 from sandbox.session.replay import smallest_test, stem_of
-from sandbox.terminal import Progress, cores, processes
+from sandbox.terminal import Progress, processes
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level

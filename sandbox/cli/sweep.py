@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.base.command import Subcommand, argument, flag, needed_option, option, option_or, repeated_option
 from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
-from sandbox.terminal import Progress, cores, processes, seconds, tell
+from sandbox.processors import cores
+from sandbox.terminal import Progress, processes, seconds, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level

@@ -11,6 +11,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import connection
 
+from sandbox.physics.jit import work_beside_others
+
 
 @contextmanager
 def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
@@ -53,6 +55,7 @@ def _termination_raised() -> Iterator[None]:
 
 def _begin() -> None:
     """Begin as a worker: interrupts are for its parent, and it ends when that has."""
+    work_beside_others()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 

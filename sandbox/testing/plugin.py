@@ -4,6 +4,7 @@ It is loaded in every project of an environment, so nothing here takes long to i
 by its name, for a level by where it lies, unless it says that it is something else.
 """
 
+import os
 from collections import deque
 from collections.abc import Generator
 from dataclasses import astuple
@@ -108,6 +109,9 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[_UNTESTED], config.stash[_FOLDERS], config.stash[_FAILURES] = {}, set(), []
     for line in MARKERS:
         config.addinivalue_line("markers", line)
+    if hasattr(config, "workerinput"):
+        # One of the processes of xdist: cores are theirs already.
+        os.environ.setdefault("SANDBOX_THREADS", "1")
     solver = config.getoption("--replay-solver")
     if solver:
         _refuse_unknown_solver(solver)

@@ -93,12 +93,13 @@ def pymunk_setting(substeps: int, iterations: int, spring: float | None = None) 
     return Setting("pymunk", name, build, method, substeps, iterations)
 
 
-def box2d_setting(substeps: int, hertz: float | None = None) -> Setting:
+def box2d_setting(substeps: int, hertz: float | None = None, threads: int = 1) -> Setting:
     """Box2D v3 with rigid distance joints, or soft ones of `hertz` times the substep rate, critically damped."""
     import pyb2d3
 
     def build(scene: Scene) -> Running:
-        world = pyb2d3.World(gravity=(0.0, -GRAVITY))
+        pool = pyb2d3.ThreadPool(threads) if threads > 1 else None
+        world = pyb2d3.World(thread_pool=pool, gravity=(0.0, -GRAVITY))
         world.sleeping_enabled = False
         mass_data = pyb2d3.MassData()
         mass_data.rotational_inertia = MOMENT

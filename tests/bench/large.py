@@ -1,81 +1,133 @@
-"""Large bodies under the direct solver, with pymunk's default step beside them where it is installed.
+"""Large bodies and heaps on one thread and on two, with Box2D on as many and pymunk beside them, and a plot.
 
-Run by hand: python -m tests.bench.large [sides] [seconds]. Lattices with diagonals, hung by one corner, at full
-stiffness; each tick of this project is followed by one of pymunk's, so that both meet the same load of the machine.
+Run by hand: python -m tests.bench.large [sides]. An engine that is not installed is left out. All that stand in one row
+take their ticks in turns, so that they meet the same load of the machine: read the ratios.
 """
 
 import importlib.util
+import math
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
-from sandbox.physics.arrays import Floats
-from sandbox.physics.pipeline.block_owner import block_of
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.reading.files import load_level
+from sandbox.physics import jit
 from sandbox.physics.step import step
+from sandbox.physics.world import World
 from tests.bench import scenes
-from tests.bench.engines import pymunk_setting
+from tests.bench.contacts import heap, pile
+from tests.bench.engines import box2d_setting, pymunk_setting
 
-SIDES = (32, 64, 100, 128, 224)
-SECONDS = 7
-# Stretch is taken over the last seconds of a run, when the body swings.
-MEASURED_TICKS = 120
-
-
-def milliseconds(action: Callable[[], object]) -> float:
-    """Wall-clock time of a call [ms]."""
-    began = time.perf_counter()
-    action()
-    return 1e3 * (time.perf_counter() - began)
+SIDES = (32, 48, 64, 100, 128, 160, 224)
+TICKS, MOST_SECONDS = 300, 25.0
+PLOT = Path(__file__).resolve().parents[2] / "docs" / "readme" / "lattices.svg"
+# Levels whose ticks take long, from tick 120 on.
+LEVELS = ("jelly_pile", "rope_bridge_wheel", "trampoline", "curtain", "quad_mesh", "tumble_drum")
 
 
-def stretch_of(scene: scenes.Scene, position: Floats) -> float:
-    """RMS stretch of a scene's links at positions (n, 2) [m]."""
-    lengths = []
-    for place in (scene.position, position):
-        separation = place[scene.links[:, 1]] - place[scene.links[:, 0]]
-        lengths.append(np.sqrt(np.sum(separation * separation, axis=1)))
-    return float(np.sqrt(np.mean((lengths[1] / lengths[0] - 1.0) ** 2)))
+def in_turns(actions: Mapping[str, Callable[[], object]]) -> dict[str, float]:
+    """Median milliseconds of each action, all of them in turns."""
+    times: dict[str, list[float]] = {name: [] for name in actions}
+    begun = time.perf_counter()
+    while len(next(iter(times.values()))) < TICKS and time.perf_counter() - begun < MOST_SECONDS:
+        for name, action in actions.items():
+            started = time.perf_counter()
+            action()
+            times[name].append(1e3 * (time.perf_counter() - started))
+    return {name: float(np.median(each)) for name, each in times.items()}
 
 
-def row(side: int, seconds: int, with_pymunk: bool) -> str:
-    """Run one lattice and state its figures."""
-    scene = scenes.lattice(side)
-    world = scene.world()
-    peer = pymunk_setting(1, 10).build(scene) if with_pymunk else None
-    first = milliseconds(lambda: step(world))
-    world.change("spring_active", world.spring_active)
-    symbolic = milliseconds(lambda: block_of(world))
-    start = scenes.total_energy(world)
-    times, peer_times, squares = [], [], []
-    ticks = 60 * seconds
-    for tick in range(ticks):
-        times.append(milliseconds(lambda: step(world)))
-        if peer is not None:
-            peer_times.append(milliseconds(peer.frame))
-        if tick >= ticks - MEASURED_TICKS:
-            squares.append(scenes.square_strains(world))
-    lost = (start - scenes.total_energy(world)) / scenes.swing_energy(scene)
-    text = f"| {side}x{side} | {len(world.rest_length)} | {first:.0f} | {symbolic:.0f} "
-    text += f"| {np.mean(times):.2f} | {np.quantile(times, 0.99):.2f} | {np.max(times):.2f} "
-    text += f"| {np.sqrt(np.mean(squares)):.1e} | {np.sqrt(np.max(squares)):.1e} | {100 * lost:.3f} % "
-    if peer is not None:
-        text += f"| {np.mean(peer_times):.2f} | {np.mean(times) / np.mean(peer_times):.2f} "
-        text += f"| {stretch_of(scene, peer.state()[0]):.1e} "
-    return text + "|"
+def with_threads(world: World, count: int) -> Callable[[], object]:
+    """A tick of a world, on so many threads."""
+
+    def tick() -> None:
+        jit.use_threads(count)
+        step(world)
+
+    return tick
+
+
+def both(build: Callable[[], World], skipped: int = 0) -> dict[str, Callable[[], object]]:
+    """Ticks of two equal worlds, on one thread and on two, once so many ticks are over."""
+    worlds = {f"{count}": build() for count in (1, 2)}
+    for world in worlds.values():
+        for _ in range(skipped):
+            step(world)
+    return {name: with_threads(world, int(name)) for name, world in worlds.items()}
+
+
+def peers(scene: scenes.Scene) -> dict[str, Callable[[], object]]:
+    """A frame of Box2D on one thread and on two, and of pymunk, at their defaults, where they are installed."""
+    found: dict[str, Callable[[], object]] = {}
+    if importlib.util.find_spec("pyb2d3"):
+        found |= {f"box2d {count}": box2d_setting(4, threads=count).build(scene).frame for count in (1, 2)}
+    if importlib.util.find_spec("pymunk"):
+        found["pymunk"] = pymunk_setting(1, 10).build(scene).frame
+    return found
+
+
+def row(name: str, found: Mapping[str, float]) -> str:
+    """A row of the table."""
+    cells = [f"{found[key]:.2f}" if key in found else "" for key in ("1", "2")]
+    cells.append(f"{found['1'] / found['2']:.2f}")
+    cells += [f"{found[key]:.2f}" if key in found else "" for key in ("box2d 1", "box2d 2", "pymunk")]
+    return f"| {name} | {' | '.join(cells)} |"
+
+
+def plot(sides: Sequence[int], rows: Sequence[Mapping[str, float]]) -> str:
+    """A picture of the milliseconds of lattices by their side, both axes logarithmic: SVG."""
+    width, height, left, bottom = 560, 340, 60, 40
+    low, high = 0.3, 300.0
+
+    def place(side: float, value: float) -> tuple[float, float]:
+        x = left + (width - left - 120) * math.log(side / sides[0]) / math.log(sides[-1] / sides[0])
+        y = height - bottom - (height - bottom - 20) * math.log(value / low) / math.log(high / low)
+        return x, y
+
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">'
+    parts = [head, f'<rect width="{width}" height="{height}" fill="#fff"/>']
+    for value in (1, 10, 100):
+        (x, y), (end, _) = place(sides[0], value), place(sides[-1], value)
+        parts.append(f'<path d="M{x:.0f} {y:.1f}H{end:.0f}" stroke="#ddd"/>')
+        parts.append(f'<text x="{x - 8:.0f}" y="{y + 4:.1f}" text-anchor="end">{value} ms</text>')
+    for side in sides:
+        x, _ = place(side, 1.0)
+        parts.append(f'<text x="{x:.0f}" y="{height - 14}" text-anchor="middle">{side}²</text>')
+    curves = (("1", "1 thread", "#c2410c"), ("2", "2 threads", "#0e7490"), ("pymunk", "pymunk", "#999"))
+    for key, words, colour in curves:
+        points = [place(side, each[key]) for side, each in zip(sides, rows, strict=True) if key in each]
+        if points:
+            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+            parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
+            x, y = points[-1]
+            parts.append(f'<text x="{x + 8:.0f}" y="{y + 4:.1f}" fill="{colour}">{words}</text>')
+    return "\n".join([*parts, "</svg>\n"])
 
 
 def main() -> None:
-    """Print the table: the first tick, the symbolic work in it, then mean, 99th percentile and worst tick [ms]."""
-    sides = [int(text) for text in sys.argv[1].split(",")] if len(sys.argv) > 1 else SIDES
-    seconds = int(sys.argv[2]) if len(sys.argv) > 2 else SECONDS
-    with_pymunk = importlib.util.find_spec("pymunk") is not None
-    head = "| lattice | springs | first | symbolic | mean ms | p99 | worst | RMS stretch | maximum | energy lost |"
-    head += " pymunk ms | ratio | its stretch |" if with_pymunk else ""
-    print(f"{head}\n|{'---|' * (head.count('|') - 1)}")
+    """Print the table, and draw lattices if all sides are measured."""
+    sides = tuple(map(int, sys.argv[1].split(","))) if len(sys.argv) > 1 else SIDES
+    print("| scene | 1 thread [ms] | 2 threads | gain | Box2D, 1 thread | 2 threads | pymunk |\n|---|---|---|---|---|---|---|")
+    rows = []
     for side in sides:
-        print(row(side, seconds, with_pymunk), flush=True)
+        scene = scenes.lattice(side)
+        rows.append(in_turns(both(scene.world) | peers(scene)))
+        print(row(f"lattice {side} x {side}", rows[-1]), flush=True)
+    if sides == SIDES:
+        PLOT.write_text(plot(sides, rows), encoding="utf-8")
+    net = scenes.joint_grid(100)
+    print(row("joint grid, from the start", in_turns(both(net.world) | peers(net))), flush=True)
+    print(row("joint grid that swings, 4 s on", in_turns(both(net.world, 240))), flush=True)
+    print(row("pile of 30 jelly cubes", in_turns(both(pile, 60))), flush=True)
+    print(row("heap of 2,000 discs", in_turns(both(lambda: heap(2000, 40), 60))), flush=True)
+    print(row("500 blocks of 4 x 4, apart", in_turns(both(scenes.blocks(500).world))), flush=True)
+    for name in LEVELS:
+        level = load_level(name)
+        print(row(f"level {name}", in_turns(both(lambda level=level: build_world(level), 120))), flush=True)
 
 
 if __name__ == "__main__":

@@ -185,7 +185,7 @@ def test_a_large_lattice_that_is_dragged_about_keeps_its_shape():
 def test_energy_of_violent_random_graphs_stays_bounded_under_fronts(kind, size, monkeypatch):
     monkeypatch.setattr(elimination, "SMALLEST_BODY", 1)
     monkeypatch.setattr(elimination, "NARROWEST_BORDER", 0.0)
-    monkeypatch.setattr(fronts, "WORTH_HALVING", 1)
+    monkeypatch.setattr(fronts, "WORTH_DIVIDING", 1)
     count, steps = size if COMPILED else (2, 20)
     for span in energy_gate.MASS_SPANS:
         graphs = energy_gate.random_graphs(kind, span, count, seed=17)
@@ -199,7 +199,7 @@ def test_an_absurd_value_in_a_large_body_neither_hangs_nor_leaves_it(array, valu
     world = mesh(9)
     first = world.add_particles(["o.0", "o.1"], [(5.0, 0.0), (6.0, 0.0)])
     world.add_springs(["o:0"], [first], [first + 1], stiffness=0.5, damping=0.9)
-    monkeypatch.setattr(fronts, "WORTH_HALVING", 1)
+    monkeypatch.setattr(fronts, "WORTH_DIVIDING", 1)
     with np.errstate(all="ignore"):
         getattr(world, array).flat[400] = value
         run(world, 3 if COMPILED else 1)

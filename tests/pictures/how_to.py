@@ -7,9 +7,9 @@ import pygame
 
 from sandbox.app.panel.sweeps.sweep_chart import draw_map
 from sandbox.level.reading.files import load_level
+from sandbox.processors import cores
 from sandbox.session.sweep.grid import SweepGrid
 from sandbox.session.sweep.running import swept
-from sandbox.terminal import cores
 from tests.pictures.photographer import DOCS, ROOT, Photographer, write_small
 from tests.support.machines import build_car, build_chain, build_walker
 

@@ -42,6 +42,7 @@ from sandbox.app.window.help import show_help
 from sandbox.app.window.input import Input
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import load_level, read_level
+from sandbox.physics.jit import use_threads, usual_threads
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
@@ -318,6 +319,8 @@ class App:
         """Apply all settings as they are."""
         self.scale = self.chosen["scale"] or self.chosen.automatic["scale"]
         show_theme(theme_of(self.chosen["theme"]))
+        threads = self.chosen["threads"]
+        use_threads(usual_threads() if threads == "auto" else int(threads))
         for keys in use_keys(self.chosen.keys):
             self.chosen.faults.append(f"preferences.json: keys: there is no key {keys!r:.40}.")
 

@@ -20,6 +20,7 @@ from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 from sandbox.physics.jit import interpreted
+from sandbox.processors import cores
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -29,6 +30,10 @@ unpack = interpreted.unpack
 Bundle = interpreted.Bundle
 # In kernels: set a field of a named tuple in a bundle to another array, or named tuple of arrays.
 set_field: Any = interpreted.set_field
+# In kernels: the head of a loop whose items threads may share, parallel(items, work). Its body is one call of a kernel,
+# which writes what is its item's alone; what items find together is summed afterwards. work: about as many
+# multiplications as there are in all, which alone decide whether a loop is worth sharing.
+parallel: Any = interpreted.parallel
 # In kernels: arrays in the memory of another, an int64 array, from an item on; (memory, first, rows) or, for rows of
 # some width, (memory, first, rows, width).
 slots_in: Any = interpreted.slots_in
@@ -44,9 +49,15 @@ ArenaLayout = interpreted.ArenaLayout
 _PLAIN = (FunctionType, BuiltinFunctionType)
 _WAYS = ("library", "generic", "checked", "interpreted")
 _WISH = "SANDBOX_KERNELS"
+_THREADS = "SANDBOX_THREADS"
+MOST_THREADS = 8
+# Multiplications of a loop that threads share: with fewer, to hand them out costs more than it saves.
+WORTH_SHARING = 300_000
 # The module that makes kernels, and how they run.
 _maker: Any = None
 _way = ""
+# Threads that share loops, 0: not chosen yet; and of how many multiplications.
+_threads, _worth = 0, WORTH_SHARING
 _making = threading.RLock()
 
 
@@ -134,6 +145,7 @@ def _choose(wish: str) -> Any:
             wish = "interpreted"
     _way = wish
     _maker = importlib.import_module(f"{__name__}.{'interpreted' if wish == 'interpreted' else 'library'}")
+    _maker.use_threads(threads(), _worth)
     COMPILED = _maker.COMPILED
     return _maker
 
@@ -146,6 +158,51 @@ def way() -> str:
     """How kernels run in this process: "library", "generic", "checked" or "interpreted"."""
     _chosen()
     return _way
+
+
+def threads() -> int:
+    """How many threads share the loops of a tick."""
+    global _threads
+    if not _threads:
+        _threads = usual_threads()
+    return _threads
+
+
+def usual_threads() -> int:
+    """How many share them until another number is chosen: by SANDBOX_THREADS, or one less than there are cores."""
+    wish = os.environ.get(_THREADS, "")
+    if wish.isdecimal() and 1 <= int(wish) <= MOST_THREADS:
+        return int(wish)
+    if wish:
+        say(f"{_THREADS} is a number from 1 to {MOST_THREADS}, not {wish!r}: it is left out")
+    return max(1, min(cores() - 1, MOST_THREADS))
+
+
+def work_beside_others() -> None:
+    """Share no loop in this process, one of several that work at once, unless SANDBOX_THREADS says so."""
+    os.environ.setdefault(_THREADS, "1")
+    use_threads(usual_threads())
+
+
+def use_threads(count: int, worth: int = WORTH_SHARING) -> None:
+    """Let so many threads share the loops of a tick; the bits are the same with any number.
+
+    worth: multiplications of a loop that is shared.
+
+    Raises:
+        ValueError: for a number that is not from 1 to MOST_THREADS.
+    """
+    global _threads, _worth
+    if not 1 <= count <= MOST_THREADS:
+        raise ValueError(f"{count} threads: a number from 1 to {MOST_THREADS} is wanted")
+    _threads, _worth = count, worth
+    if _maker is not None:
+        _maker.use_threads(count, worth)
+
+
+def threads_started() -> int:
+    """Threads beside those of Python that were started in this process."""
+    return int(_chosen().threads_started())
 
 
 def __getattr__(name: str) -> Any:

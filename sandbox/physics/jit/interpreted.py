@@ -75,6 +75,15 @@ def hold(bundle: Any, memory: Any) -> None:
     """Do nothing: the views of a bundle keep their arrays alive."""
 
 
+def use_threads(count: int, worth: int) -> None:
+    """Do nothing: loops are run in turn."""
+
+
+def threads_started() -> int:
+    """None: loops are run in turn."""
+    return 0
+
+
 def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:
     """The items of a bundle as they are now."""
     items, given = bundle.items, bundle.given
@@ -89,6 +98,11 @@ def _returned(item: Any, given: Any) -> Any:
         returned = [_returned(part, other) for part, other in zip(parts, given, strict=True)]
         return cast(Any, given)._make(returned) if hasattr(given, "_make") else tuple(returned)
     return item.obj if isinstance(item, memoryview) and item.obj is given else np.asarray(item)
+
+
+def parallel(items: int, work: int) -> range:
+    """The numbers below `items`, in their order."""
+    return range(items)
 
 
 def set_field(place: Any, field: str, value: Any) -> None:

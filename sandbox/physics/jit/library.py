@@ -32,7 +32,8 @@ _MOST_WORDS = 448
 _FUNCTIONS = (
     "PyFloat_AsDouble", "PyLong_AsLongLong", "PyObject_IsTrue", "PyLong_AsVoidPtr", "PyTuple_Size", "PyTuple_GetItem",
     "PyObject_RichCompareBool", "PyErr_Occurred", "PyErr_Format", "PyObject_Vectorcall", "PyFloat_FromDouble",
-    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef", "Py_FatalError",
+    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef", "Py_FatalError", "PyThread_start_new_thread",
+    "PyThread_allocate_lock", "PyThread_acquire_lock", "PyThread_release_lock",
 )  # fmt: skip
 _CONTIGUOUS_WRITEABLE = 0x401
 _FASTCALL = 0x80
@@ -100,11 +101,22 @@ class Library:
         """Whether the processor runs libraries for x86-64 level v3 too."""
         return bool(self._code.runs_wide())
 
+    def use_threads(self, count: int, worth: int) -> None:
+        """Let so many threads share loops of so many multiplications, the caller among them."""
+        self._code.use_threads(ctypes.c_int64(count), ctypes.c_int64(worth))
+
+    @property
+    def threads_started(self) -> int:
+        """Threads beside callers that were started, in this process."""
+        return int(self._code.threads_started())
+
     def _connect(self) -> None:
         """Give the library the addresses of Python's functions."""
         functions = [ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value for name in _FUNCTIONS]
         words = [id(np.ndarray), id(None), id(TypeError), id(RuntimeError), *functions]
         self._code.connect((ctypes.c_void_p * len(words))(*words))
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._code.forget_threads)
 
     def function(self, name: str) -> Any:
         """A builtin function that runs an entry.
@@ -230,6 +242,16 @@ def make(kernel: Any) -> Any:
     """The function that modules get for a kernel which Python calls; one of an unknown program is interpreted."""
     library = open_library()
     return library.function(kernel.name) if kernel.name in library.entries else interpreted.make(kernel)
+
+
+def use_threads(count: int, worth: int) -> None:
+    """Let so many threads share loops of so many multiplications, the caller among them."""
+    open_library().use_threads(count, worth)
+
+
+def threads_started() -> int:
+    """Threads beside callers that were started, in this process."""
+    return open_library().threads_started
 
 
 bundle, hold, items_of = bundles.bundle, bundles.hold, bundles.items_of

@@ -240,11 +240,6 @@ def _hold_areas(
     for r in range(low, high):
         triangles.label[r] = r
         triangles.fixed[r] = triangles.inverse_mass[r] == 0.0
-    for k in range(first, last):
-        for i in range(3):
-            p = triangles.corner[k, i]
-            triangles.label[p] = p
-            triangles.fixed[p] = triangles.inverse_mass[p] == 0.0
     done = SLOWED
     while _join(first, last, triangles, h):
         done = JOINED
@@ -373,17 +368,24 @@ def _join(first: int, last: int, triangles: ClampedTriangles, h: float) -> bool:
 
 @inner_kernel
 def _unite(k: int, triangles: ClampedTriangles) -> bool:
-    # Let the corners of a triangle move as one; whether they did not.
+    # Let the corners of a triangle move as one, and not at all where one is pinned; whether they did.
     label, fixed = triangles.label, triangles.fixed
-    found = False
-    joined = root_of(label, triangles.corner[k, 0])
-    for i in range(1, 3):
-        other = root_of(label, triangles.corner[k, i])
-        if other != joined:
+    found, held, joined = False, False, -1
+    for i in range(3):
+        p = triangles.corner[k, i]
+        if triangles.inverse_mass[p] == 0.0:
+            held = True
+            continue
+        other = root_of(label, p)
+        if joined >= 0 and other != joined:
             either = fixed[joined] or fixed[other]
-            joined = united(label, joined, other)
-            fixed[joined] = either
+            other = united(label, joined, other)
+            fixed[other] = either
             found = True
+        joined = other
+    if held and joined >= 0 and not fixed[joined]:
+        fixed[joined] = True
+        found = True
     return found
 
 
@@ -413,13 +415,13 @@ def _move_as_one(low: int, high: int, triangles: ClampedTriangles) -> None:
         sums[g, SPIN] += mass[r] * (dx * dv - dy * du)
     for r in range(low, high):
         g = root_of(triangles.label, r)
-        if triangles.inverse_mass[r] == 0.0 or sums[g, COUNT] == 1.0:
+        if triangles.inverse_mass[r] == 0.0:
             continue
-        turn = sums[g, SPIN] / sums[g, INERTIA] if sums[g, INERTIA] > 0.0 else 0.0
         if triangles.fixed[g]:
             velocity[r, 0] = 0.0
             velocity[r, 1] = 0.0
-        else:
+        elif sums[g, COUNT] > 1.0:
+            turn = sums[g, SPIN] / sums[g, INERTIA] if sums[g, INERTIA] > 0.0 else 0.0
             velocity[r, 0] = sums[g, U] / sums[g, MASS] - turn * (position[r, 1] - sums[g, Y] / sums[g, MASS])
             velocity[r, 1] = sums[g, V] / sums[g, MASS] + turn * (position[r, 0] - sums[g, X] / sums[g, MASS])
 

@@ -15,6 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from sandbox.physics.jit import work_beside_others
 from sandbox.session.sweep.grid import SweepError, SweepGrid, SweepRequest
 from sandbox.session.sweep.running import run_case
 
@@ -101,6 +102,7 @@ def main() -> None:
     """Run the points that standard input asks for."""
     if hasattr(os, "nice"):
         os.nice(NICENESS)
+    work_beside_others()
     task = json.loads(sys.stdin.readline())
     threading.Thread(target=_leave_with_parent, daemon=True).start()
     asked = task["request"]

@@ -49,6 +49,10 @@ typedef struct Interpreter {
     Object *(*from_flag)(long);
     void (*keep)(Object *);
     void (*end)(const char *);
+    unsigned long (*start_thread)(void (*)(void *), void *);
+    void *(*new_lock)(void);
+    int (*acquire)(void *, int);
+    void (*release)(void *);
 } Interpreter;
 
 #if defined(_WIN32)
@@ -109,6 +113,104 @@ void end_out_of_range(const char *file, int line, Word index, Word length) {
     python.end(before(before(digits(at, line), ":"), file));
 }
 #endif
+
+/* Threads that share the items of a loop with the one that calls it. They call nothing of Python but its locks, and
+   sleep between loops; which thread takes an item is chance, so items depend on nothing that another writes. */
+#define MOST_THREADS 8
+/* Looks for the next loop before a thread sleeps: some microseconds. */
+#define LOOKS 200
+enum { OPEN = 1 << 16 };
+static struct {
+    Word wanted, started; /* threads beside the caller */
+    Word taken;           /* whether a loop is shared: one within it, or of another caller, is a plain one */
+    Word state;           /* OPEN while there may be items left, and how many threads are at work */
+    Word items, next;
+    void (*run)(const void *, Word);
+    const void *what;
+    Word asked[MOST_THREADS];
+    void *go[MOST_THREADS];
+} pool;
+
+/* Multiplications of a loop that is shared. */
+Word worth_sharing = (Word)(~0ull >> 1);
+
+static void pause_a_little(void) {
+#if defined(__x86_64__)
+    __asm__ volatile("pause");
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+static void run_items(void) {
+    Word item;
+    while ((item = __atomic_fetch_add(&pool.next, 1, __ATOMIC_ACQ_REL)) < pool.items) pool.run(pool.what, item);
+}
+
+static void work_on(void *place) {
+    const Word k = (Word)place;
+    for (;;) {
+        int looks = 0;
+        while (looks < LOOKS && !python.acquire(pool.go[k], 0)) {
+            looks++;
+            pause_a_little();
+        }
+        if (looks == LOOKS) python.acquire(pool.go[k], 1);
+        __atomic_store_n(&pool.asked[k], 0, __ATOMIC_SEQ_CST);
+        Word seen = __atomic_load_n(&pool.state, __ATOMIC_SEQ_CST);
+        while (seen & OPEN &&
+               !__atomic_compare_exchange_n(&pool.state, &seen, seen + 1, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST)) {}
+        if (!(seen & OPEN)) continue;
+        run_items();
+        __atomic_sub_fetch(&pool.state, 1, __ATOMIC_SEQ_CST);
+    }
+}
+
+/* How many threads share loops of so many multiplications, the caller among them; they start with the first loop. */
+SHARED void use_threads(Word count, Word worth) {
+    pool.wanted = count < 1 ? 0 : count > MOST_THREADS ? MOST_THREADS - 1 : count - 1;
+    worth_sharing = pool.wanted ? worth : (Word)(~0ull >> 1);
+}
+
+/* Threads beside callers that were started. */
+SHARED Word threads_started(void) { return pool.started; }
+
+/* In a process that was forked: it has none of the threads of the other. */
+SHARED void forget_threads(void) {
+    pool.started = pool.taken = pool.state = 0;
+}
+
+static void start_threads(void) {
+    while (pool.started < pool.wanted) {
+        const Word k = pool.started;
+        void *lock = python.new_lock();
+        if (!lock || !python.acquire(lock, 0)) break;
+        pool.go[k] = lock;
+        pool.asked[k] = 0;
+        if (python.start_thread(work_on, (void *)k) == (unsigned long)-1) break;
+        pool.started = k + 1;
+    }
+    if (pool.started < pool.wanted) pool.wanted = pool.started;
+}
+
+void share(Word items, void (*run)(const void *what, Word item), const void *what) {
+    if (!pool.wanted || __atomic_exchange_n(&pool.taken, 1, __ATOMIC_ACQ_REL)) {
+        for (Word item = 0; item < items; item++) run(what, item);
+        return;
+    }
+    if (pool.started < pool.wanted) start_threads();
+    pool.run = run;
+    pool.what = what;
+    pool.items = items;
+    __atomic_store_n(&pool.next, 0, __ATOMIC_SEQ_CST);
+    __atomic_store_n(&pool.state, OPEN, __ATOMIC_SEQ_CST);
+    for (Word k = 0; k < pool.wanted && k + 1 < items; k++)
+        if (!__atomic_exchange_n(&pool.asked[k], 1, __ATOMIC_SEQ_CST)) python.release(pool.go[k]);
+    run_items();
+    __atomic_fetch_and(&pool.state, ~(Word)OPEN, __ATOMIC_SEQ_CST);
+    while (__atomic_load_n(&pool.state, __ATOMIC_SEQ_CST)) pause_a_little();
+    __atomic_store_n(&pool.taken, 0, __ATOMIC_SEQ_CST);
+}
 
 #if defined(_WIN32)
 /* Called when the library is loaded: nothing is to be done. */

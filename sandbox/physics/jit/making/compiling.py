@@ -34,7 +34,7 @@ from sandbox.physics.jit.translate.cpp_types import (
 )
 from sandbox.physics.jit.translate.program import Translation, symbol_of, words_of
 
-_CALLING = Path(__file__).with_name("calling.c")
+CALLING = Path(__file__).with_name("calling.c")
 # Determinism: no sum whose terms change places, no product that melts into one. Kernels ask for no error of a root.
 _OPTIONS = (
     "-O3", "-g0", "-fno-builtin", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off", "-fno-stack-protector",
@@ -136,8 +136,8 @@ def compiled(
             (folder / file).write_text(text, encoding="utf-8")
         units = list(texts)
         if not platform.is_web:
-            (folder / _CALLING.name).write_bytes(_CALLING.read_bytes())
-            units.append(_CALLING.name)
+            (folder / CALLING.name).write_bytes(CALLING.read_bytes())
+            units.append(CALLING.name)
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(lambda unit: _zig(folder, kept, _compiling(unit, platform, checked, sanitized)), units))
         _zig(folder, kept, _linking(units, symbols, platform, sanitized))

@@ -89,6 +89,21 @@ template <class T, int dimensions> static Array<T, dimensions> cut(Array<T, dime
     return array;
 }
 
+// Loops whose items threads may share, where they have so many multiplications.
+#if !defined(__wasm__)
+extern "C" int64_t worth_sharing;
+extern "C" void share(int64_t items, void (*run)(const void *what, int64_t item), const void *what);
+#endif
+template <class F> static void parallel(int64_t items, int64_t work, const F &body) {
+#if !defined(__wasm__)
+    if (items > 1 && work >= worth_sharing) {
+        share(items, [](const void *what, int64_t item) { (*(const F *)what)(item); }, &body);
+        return;
+    }
+#endif
+    for (int64_t item = 0; item < items; item++) body(item);
+}
+
 template <class A, class B> struct Tuple2 { A item0; B item1; };
 template <class A, class B, class C> struct Tuple3 { A item0; B item1; C item2; };
 template <class A, class B, class C, class D> struct Tuple4 { A item0; B item1; C item2; D item3; };

@@ -308,6 +308,8 @@ class Body(Expressions):
             raise self.refuse(statement, "a loop has one name, and no else")
         body = self._block(statement.body, depth + 1)
         name = spelled(target.id)
+        if self._is_parallel(statement.iter):
+            return self._parallel(statement, name, body, indent)
         if isinstance(statement.iter, ast.Tuple):
             items = ", ".join(f"int64_t({self.scalar(item).text})" for item in statement.iter.elts)
             head = f"for (const int64_t {name}_of[] = {{{items}}}; const int64_t {name} : {name}_of) {{"
@@ -329,6 +331,21 @@ class Body(Expressions):
         forth = {1: f"{counter}++", -1: f"{counter}--"}.get(step, f"{counter} {'+' if step > 0 else '-'}= {abs(step)}")
         head = f"{indent}for ({start}; {counter} {'<' if step > 0 else '>'} {end}; {forth}) {{"
         return [head, *body, f"{indent}}}"]
+
+    def _is_parallel(self, node: ast.expr) -> bool:
+        function = node.func if isinstance(node, ast.Call) else None
+        return isinstance(function, ast.Name) and meaning(self.module, function.id) is interpreted.parallel
+
+    def _parallel(self, statement: ast.For, name: str, body: list[str], indent: str) -> list[str]:
+        assert isinstance(statement.iter, ast.Call)
+        only = statement.body[0] if len(statement.body) == 1 else None
+        if not (isinstance(only, ast.Expr) and isinstance(only.value, ast.Call)) or len(statement.iter.args) != 2:
+            raise self.refuse(statement, "a parallel loop has a number of items, work, and one call as its body")
+        items, work = (self.scalar(argument) for argument in statement.iter.args)
+        if items.type != INTEGER or work.type != INTEGER:
+            raise self.refuse(statement, "items and work of a parallel loop are integers")
+        head = f"{indent}parallel({items.text}, {work.text}, [&](const int64_t {name}) {{"
+        return [head, *body, f"{indent}}});"]
 
     def _range(self, call: ast.Call) -> tuple[Code, Code, int]:
         codes = [self.scalar(argument) for argument in call.args]

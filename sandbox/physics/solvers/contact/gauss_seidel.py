@@ -79,7 +79,7 @@ class Delassus(NamedTuple):
     mass.
 
     Points of block k: point[start[k]:start[k + 1]]; its numbers [1/kg], two rows of a square for each point, from
-    base[k] on. columns: scratch of one block. joints: those of the bodies and particles.
+    base[k] on. columns: scratch of blocks, by lane. joints: those of the bodies and particles.
     """
 
     block: Slots

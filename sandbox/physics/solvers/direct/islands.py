@@ -23,8 +23,10 @@ from sandbox.physics.solvers.direct.system import BY_MASS, PASSED, Span, System,
 from sandbox.physics.topology.sorting import list_by_key, place_among
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
-# Delassus blocks of the bodies want: for their numbers, and for the columns of the largest.
+# Delassus blocks of the bodies want: for their numbers, and in each lane for the columns of the largest.
 BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS, COUNTED = range(6)
+# Bodies of an island that are worked on at once, each lane of them with scratch of its own.
+LANES = 8
 # What a Delassus block may cost at most in a linear solve, in units of four multiplications, about 1 ns each. A body
 # that wants more, because much of it lies on something, has none: in the sweeps its particles answer by their own
 # masses, and between them by its springs. Less leaves what is large soft where it lands.
@@ -328,7 +330,7 @@ def _find_room(system: System, workspace: IslandWorkspace) -> None:
             columns = max(columns, 4 * points * (span.last_row - span.first_row))
     delassus.base[islands.counts[BODIES]] = base
     islands.counts[NUMBERS] = base
-    islands.counts[COLUMNS] = columns
+    islands.counts[COLUMNS] = min(LANES, islands.counts[BODIES]) * columns
 
 
 @inner_kernel

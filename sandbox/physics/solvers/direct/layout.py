@@ -23,14 +23,22 @@ from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.marks import LAW_NISSEN
-from sandbox.physics.solvers.direct.system import Bodies, Constraints, Rows, ShapeMatchGroups, Springs, System
+from sandbox.physics.solvers.direct.system import (
+    Bodies,
+    Constraints,
+    Rows,
+    ShapeMatchGroups,
+    Springs,
+    System,
+    worth_of_sharing,
+)
 from sandbox.physics.solvers.linear import elimination
 from sandbox.physics.solvers.linear import fronts as multifrontal
 from sandbox.physics.solvers.linear.elimination import (
     BODIES,
     BORDERS,
+    DIVIDED,
     FRONTS,
-    HALVED,
     SMALL,
     WIDEST_NARROW,
     Dissection,
@@ -39,8 +47,8 @@ from sandbox.physics.solvers.linear.elimination import (
     order_for_elimination,
 )
 from sandbox.physics.solvers.linear.elimination import COUNTS as FOUND_COUNTS
-from sandbox.physics.solvers.linear.fronts import FrontBlocks, block_in_front, new_fronts
-from sandbox.physics.solvers.linear.sparse_ldl import block_below, new_matrix
+from sandbox.physics.solvers.linear.fronts import FrontBlocks, Fronts, block_in_front, new_fronts
+from sandbox.physics.solvers.linear.sparse_ldl import Matrix, block_below, new_matrix
 from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import list_by_key, place_among, sort_by_key
 from sandbox.physics.untangling.jellies import Jellies, group_triangles
@@ -51,6 +59,8 @@ NARROW = 3
 # Places in `counts`: springs, constraints and their corners, free particles, pinned ones, links between free ones; wide
 # constraints that a body has at most.
 SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, MOST_WIDE, COUNTS = range(8)
+# Multiplications of a step: for each row what springs and tests take, and for each pair of blocks of a column.
+ROW_WORK, PAIR_WORK = 400, 16
 # In place of the row of a body's one pinned particle.
 NO_PIVOT, SEVERAL_PIVOTS = -1, -2
 
@@ -139,7 +149,7 @@ class PlacedConstraints(NamedTuple):
 
 def tuning() -> Tuning:
     """The numbers of the modules that kernels are given them from."""
-    whole = elimination.SMALLEST_BODY, elimination.LEAF_SIZE, multifrontal.WORTH_HALVING, NARROW
+    whole = elimination.SMALLEST_BODY, elimination.LEAF_SIZE, multifrontal.WORTH_DIVIDING, NARROW
     return Tuning(np.array(whole, np.int64), np.array([elimination.NARROWEST_BORDER]))
 
 
@@ -160,7 +170,7 @@ def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, 
         return
     made, small, bodies = ordered.elimination, ordered.small, found[BODIES]
     dissected = cut_to(ordered.fronts, found[FRONTS], found[BORDERS])
-    fronts = new_fronts(nodes, made.first_front, bodies, dissected, tuned.whole[HALVED], arena)
+    fronts = new_fronts(nodes, made.first_front, bodies, dissected, tuned.whole[DIVIDED], arena)
     matrix = new_matrix(nodes, small.order[: found[SMALL]], small.columns, made.row_of, arena)
     if is_full(arena):
         return
@@ -174,8 +184,9 @@ def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, 
     set_field(out, "fronts", fronts)
     set_field(out, "matrix", matrix)
     # All that follows is ready for a step; of wide constraints a body has most_wide at most.
+    work = work_of_bodies(bodies, made.first_row, fronts, matrix, arena)
     blocks_of_rows = new_tuple(
-        Bodies, arena, row_start=places.row_start, spring_start=places.spring_start,
+        Bodies, arena, work=work, row_start=places.row_start, spring_start=places.spring_start,
         constraint_start=places.constraint_start, lowest=places.lowest, pivot=places.pivot, anchored=places.anchored,
         bodies=places.lowest.shape[0],
     )  # fmt: skip
@@ -196,6 +207,22 @@ def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, 
     set_field(out, "constraints", constraints)
     if not is_full(arena):
         lay_out_groups(state, places.constraint_start, arena, out)
+
+
+@inner_kernel
+def work_of_bodies(bodies: int, first_row: Slots, fronts: Fronts, matrix: Matrix, arena: Arena) -> Slots:
+    """About how many multiplications a step of each body takes, and last what a loop over all saves (b + 1,)."""
+    work = new_slots(arena, bodies + 1)
+    if not is_full(arena):
+        for b in range(bodies):
+            first, last = first_row[b], first_row[b + 1]
+            work[b] = ROW_WORK * (last - first) + PAIR_WORK * (matrix.target_start[last] - matrix.target_start[first])
+            front = fronts.of_row[last - 1]
+            if front >= 0:
+                for stage in range(fronts.stages[front, 0], fronts.stages[front, 1]):
+                    work[b] += fronts.stage_work[stage, 0]
+        work[bodies] = worth_of_sharing(0, bodies, work[:0], work)
+    return work
 
 
 @inner_kernel

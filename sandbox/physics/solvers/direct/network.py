@@ -239,7 +239,7 @@ def _take_in_wide(span: Span, system: System) -> None:
             constraints.response[number, r, 0] = rows.delta_v[r, 0]
             constraints.response[number, r, 1] = rows.delta_v[r, 1]
         yields = gradient_dot(k, constraints, rows.delta_v, free_count)
-        constraints.scale[number] = constraints.K[k] / (1.0 + constraints.K[k] * max(0.0, yields))
+        constraints.scale[k] = constraints.K[k] / (1.0 + constraints.K[k] * max(0.0, yields))
     copy(span, rows.saved_delta_v, rows.delta_v)
     _correct_wide(span, system, span.last_constraint)
 
@@ -263,7 +263,7 @@ def _correct_wide(span: Span, system: System, last: int) -> None:
         number = constraints.wide[k]
         if number < 0:
             continue
-        taken = constraints.scale[number] * gradient_dot(k, constraints, rows.delta_v, free_count)
+        taken = constraints.scale[k] * gradient_dot(k, constraints, rows.delta_v, free_count)
         for r in range(span.first_row, span.last_row):
             rows.delta_v[r, 0] -= taken * constraints.response[number, r, 0]
             rows.delta_v[r, 1] -= taken * constraints.response[number, r, 1]

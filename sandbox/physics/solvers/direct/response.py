@@ -16,9 +16,14 @@ from sandbox.physics.solvers.linear.fronts import subtract_pair
 
 
 @inner_kernel
-def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slots, vector: FloatRows) -> None:
-    """The block k of a body, whose points are in the order of their rows; row (n,): of each particle."""
-    matrix, columns, numbers = system.matrix, delassus.columns, delassus.numbers
+def load_block(
+    k: int, span: Span, system: System, delassus: Delassus, columns: Floats, row: Slots, vector: FloatRows
+) -> None:  # fmt: skip
+    """The block k of a body, whose points are in the order of their rows; row (n,): of each particle.
+
+    columns: scratch.
+    """
+    matrix, numbers = system.matrix, delassus.numbers
     first, base = delassus.start[k], delassus.base[k]
     points = delassus.start[k + 1] - first
     if system.fronts.of_row[span.first_row] >= 0:
@@ -98,7 +103,7 @@ def _take_out_wide(k: int, span: Span, constraints: Constraints, delassus: Delas
             continue
         for i in range(2 * points):
             here = constraints.response[number, row[delassus.point[first + i // 2]], i % 2]
-            taken = constraints.scale[number] * here
+            taken = constraints.scale[constraint] * here
             for j in range(2 * points):
                 z = constraints.response[number, row[delassus.point[first + j // 2]], j % 2]
                 delassus.numbers[base + i * 2 * points + j] -= taken * z

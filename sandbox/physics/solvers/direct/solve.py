@@ -15,7 +15,7 @@ from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.surfaces import spin_of
 from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.equation import implicit_spring_constant
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, parallel
 from sandbox.physics.joints.joint_rows import couple_joints, gather_push
 from sandbox.physics.solvers.contact.contact_solve import (
     change_of_sweep,
@@ -57,6 +57,7 @@ from sandbox.physics.solvers.direct.islands import (
     BODIES,
     EXCESS,
     ISLANDS,
+    LANES,
     MEMBERS,
     TOTAL,
     BodyIslands,
@@ -100,6 +101,7 @@ from sandbox.physics.solvers.direct.system import (
     System,
     hold_triangles,
     span_of,
+    worth_of_sharing,
 )
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
@@ -182,23 +184,36 @@ def _open(
     workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
 ) -> None:
     # Load the families and energies of an island's bodies, and its free particles; no contact has acted.
-    islands, bodies = workspace.islands, system.bodies
-    for k in range(islands.counts[BODIES]):
-        body = islands.body[k]
-        span = span_of(system, body)
-        islands.fresh[k] = is_new(span, system, state.energy_bank)
-        open_body(body, span, system, state, inputs, 0.0, auto_substeps, h)
-        firmness = 1.0
-        for i in range(system.bodies.spring_start[body], system.bodies.spring_start[body + 1]):
-            slot = system.springs.slot[i]
-            firmness = min(firmness, inputs.stiffness[slot], inputs.damping[slot])
-        islands.rigid[k] = firmness >= RIGID
-        islands.firm[k] = firmness >= FIRM
-        weigh_body(k, span, system.rows, islands)
-        islands.energy0[k] = bodies.energy0[body]
-        islands.budget[k] = bodies.budget[body]
-        islands.due[k] = True
+    islands = workspace.islands
+    for k in parallel(islands.counts[BODIES], _worth(islands, system)):
+        _open_one(k, islands, system, state, inputs, auto_substeps, h)
     open_free(islands, state, inputs.start)
+
+
+@inner_kernel
+def _worth(islands: BodyIslands, system: System) -> int:
+    # What a parallel loop over an island's bodies saves.
+    return worth_of_sharing(0, islands.counts[BODIES], islands.body, system.bodies.work)
+
+
+@inner_kernel
+def _open_one(
+    k: int, islands: BodyIslands, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
+) -> None:
+    bodies, body = system.bodies, islands.body[k]
+    span = span_of(system, body)
+    islands.fresh[k] = is_new(span, system, state.energy_bank)
+    open_body(body, span, system, state, inputs, 0.0, auto_substeps, h)
+    firmness = 1.0
+    for i in range(system.bodies.spring_start[body], system.bodies.spring_start[body + 1]):
+        slot = system.springs.slot[i]
+        firmness = min(firmness, inputs.stiffness[slot], inputs.damping[slot])
+    islands.rigid[k] = firmness >= RIGID
+    islands.firm[k] = firmness >= FIRM
+    weigh_body(k, span, system.rows, islands)
+    islands.energy0[k] = bodies.energy0[body]
+    islands.budget[k] = bodies.budget[body]
+    islands.due[k] = True
 
 
 @inner_kernel
@@ -267,31 +282,47 @@ def _solve_linearly(
 @inner_kernel
 def _solve_due(workspace: IslandWorkspace, system: System, h: float) -> None:
     # Linearise and factor the bodies that are due: their velocities without contacts, and their Delassus blocks.
+    islands = workspace.islands
+    for lane in parallel(min(LANES, islands.counts[BODIES]), _worth(islands, system)):
+        _solve_lane(lane, workspace, system, h)
+
+
+@inner_kernel
+def _solve_lane(lane: int, workspace: IslandWorkspace, system: System, h: float) -> None:
+    # Every so many bodies of an island, which share the scratch of a lane.
+    islands, count = workspace.islands, workspace.islands.counts[BODIES]
+    lanes, room = min(LANES, count), workspace.delassus.columns.shape[0] // min(LANES, count)
+    columns = workspace.delassus.columns[lane * room : (lane + 1) * room]
+    for turn in range((count - lane + lanes - 1) // lanes):
+        k = lane + turn * lanes
+        if islands.due[k]:
+            _solve_one(k, columns, workspace, system, h)
+
+
+@inner_kernel
+def _solve_one(k: int, columns: Floats, workspace: IslandWorkspace, system: System, h: float) -> None:
     islands, delassus, rows = workspace.islands, workspace.delassus, system.rows
-    for k in range(islands.counts[BODIES]):
-        if not islands.due[k]:
-            continue
-        body = islands.body[k]
-        span = span_of(system, body)
-        islands.still[k] = not islands.by_mass[k] and _is_still(k, span, system, islands)
-        linearise(span, system, h, AHEAD, AHEAD)
-        solve_linear(span, system)
-        # What the body does without contacts; `v` stays where it was linearised.
-        for r in range(span.first_row, span.last_row):
-            islands.v_free[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
-            islands.v_free[r, 1] = rows.v[r, 1] + rows.delta_v[r, 1]
-        if not islands.by_mass[k]:
-            load_block(k, span, system, delassus, islands.row, islands.impulse)
-        if islands.still[k]:
-            spin = spin_of_body(body, system)
-            turn_to(span, rows, spin, spin.momentum, islands.v_free)
-            hold_block(k, span, system, spin, delassus, islands.row, islands.impulse)
-        if islands.driven[k]:
-            load_answers(span, system, delassus.joints, islands.row, islands.impulse)
-        for i in range(delassus.start[k], delassus.start[k + 1]):
-            p = delassus.point[i]
-            islands.v0[p, 0] = islands.v_free[islands.row[p], 0]
-            islands.v0[p, 1] = islands.v_free[islands.row[p], 1]
+    body = islands.body[k]
+    span = span_of(system, body)
+    islands.still[k] = not islands.by_mass[k] and _is_still(k, span, system, islands)
+    linearise(span, system, h, AHEAD, AHEAD)
+    solve_linear(span, system)
+    # What the body does without contacts; `v` stays where it was linearised.
+    for r in range(span.first_row, span.last_row):
+        islands.v_free[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
+        islands.v_free[r, 1] = rows.v[r, 1] + rows.delta_v[r, 1]
+    if not islands.by_mass[k]:
+        load_block(k, span, system, delassus, columns, islands.row, islands.impulse)
+    if islands.still[k]:
+        spin = spin_of_body(body, system)
+        turn_to(span, rows, spin, spin.momentum, islands.v_free)
+        hold_block(k, span, system, spin, delassus, islands.row, islands.impulse)
+    if islands.driven[k]:
+        load_answers(span, system, delassus.joints, islands.row, islands.impulse)
+    for i in range(delassus.start[k], delassus.start[k + 1]):
+        p = delassus.point[i]
+        islands.v0[p, 0] = islands.v_free[islands.row[p], 0]
+        islands.v0[p, 1] = islands.v_free[islands.row[p], 1]
 
 
 @inner_kernel
@@ -433,32 +464,38 @@ def _add_push(contacts: Contacts, islands: BodyIslands) -> None:
 @inner_kernel
 def _apply_impulses(workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
     # v' = v_free + A^-1 J^T lambda of every body, clamped; its energy and misfit.
-    islands, rows = workspace.islands, system.rows
-    for k in range(islands.counts[BODIES]):
-        span = span_of(system, islands.body[k])
-        spin = spin_of_body(islands.body[k], system)
-        torque = torque_of(span, rows, spin, islands.impulse)
-        still = islands.still[k]
-        if still:
-            add_torque(span, rows, spin, -torque, islands.impulse)
-        respond(span, system, islands.impulse)
-        if still:
-            turn_to(span, rows, spin, 0.0, islands.impulse)
-        for r in range(span.first_row, span.last_row):
-            for axis in range(2):
-                v = islands.v_free[r, axis] + islands.impulse[r, axis]
-                rows.delta_v[r, axis] = v - rows.v[r, axis]
-                rows.v[r, axis] = v
-        hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, not still, spin.momentum + torque, h)
-        elastic, misfit, _ = update(span, system, h)
-        keep_tension(span, system)
-        clamped = clamp_rows(span, rows, state, h)
-        if hold_triangles(span, system, h) != AS_IT_WAS or clamped:
-            elastic = potential(span, system, rows.position, rows.v, h, h)
-            find_tension(span, system, h)
-        measure_body(k, span, system, workspace, kinetic_at_end(islands.body[k], span, system, h) + elastic, h)
-        islands.misfit[k] = misfit
+    islands = workspace.islands
+    for k in parallel(islands.counts[BODIES], _worth(islands, system)):
+        _apply_to_one(k, workspace, system, state, h)
     clamp_free(islands, state, h)
+
+
+@inner_kernel
+def _apply_to_one(k: int, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
+    islands, rows = workspace.islands, system.rows
+    span = span_of(system, islands.body[k])
+    spin = spin_of_body(islands.body[k], system)
+    torque = torque_of(span, rows, spin, islands.impulse)
+    still = islands.still[k]
+    if still:
+        add_torque(span, rows, spin, -torque, islands.impulse)
+    respond(span, system, islands.impulse)
+    if still:
+        turn_to(span, rows, spin, 0.0, islands.impulse)
+    for r in range(span.first_row, span.last_row):
+        for axis in range(2):
+            v = islands.v_free[r, axis] + islands.impulse[r, axis]
+            rows.delta_v[r, axis] = v - rows.v[r, axis]
+            rows.v[r, axis] = v
+    hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, not still, spin.momentum + torque, h)
+    elastic, misfit, _ = update(span, system, h)
+    keep_tension(span, system)
+    clamped = clamp_rows(span, rows, state, h)
+    if hold_triangles(span, system, h) != AS_IT_WAS or clamped:
+        elastic = potential(span, system, rows.position, rows.v, h, h)
+        find_tension(span, system, h)
+    measure_body(k, span, system, workspace, kinetic_at_end(islands.body[k], span, system, h) + elastic, h)
+    islands.misfit[k] = misfit
 
 
 @inner_kernel

@@ -24,7 +24,7 @@ from sandbox.physics.geometry.rigid import (
     with_point,
 )
 from sandbox.physics.integrate import follow
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, parallel
 from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.solvers.direct.energy_budget import (
     ENERGY_ROUNDING,
@@ -104,19 +104,31 @@ def step_bodies(
 
     ways: counts, see system.py; touched: some bodies are, and at that end already.
     """
-    bodies, rows, springs = system.bodies, system.rows, system.springs
-    for body in range(bodies.lowest.shape[0]):
-        if touched and bodies.touched[body]:
-            continue
-        span = span_of(system, body)
-        open_body(body, span, system, state, inputs, 1.0, auto_substeps, h)
-        ways[step_body(body, span, system, state, h)] += 1
-        for r in range(span.first_row, span.last_row):
-            state.velocity[rows.particle[r], 0] = rows.v[r, 0]
-            state.velocity[rows.particle[r], 1] = rows.v[r, 1]
-        for k in range(span.first_spring, span.last_spring):
-            state.tension[springs.slot[k]] = springs.tension[k]
+    bodies, count = system.bodies, system.bodies.lowest.shape[0]
+    for body in parallel(count, bodies.work[count]):
+        _step_alone(body, system, state, inputs, touched, auto_substeps, h)
+    for body in range(count):
+        if not (touched and bodies.touched[body]):
+            ways[bodies.way[body]] += 1
     follow(state.velocity, state.slow_velocity, state.slow_change, state.particle_active)
+
+
+@inner_kernel
+def _step_alone(
+    body: int, system: System, state: State, inputs: Inputs, touched: bool, auto_substeps: int, h: float
+) -> None:  # fmt: skip
+    # Advance one body that nothing touches.
+    bodies, rows, springs = system.bodies, system.rows, system.springs
+    if touched and bodies.touched[body]:
+        return
+    span = span_of(system, body)
+    open_body(body, span, system, state, inputs, 1.0, auto_substeps, h)
+    bodies.way[body] = step_body(body, span, system, state, h)
+    for r in range(span.first_row, span.last_row):
+        state.velocity[rows.particle[r], 0] = rows.v[r, 0]
+        state.velocity[rows.particle[r], 1] = rows.v[r, 1]
+    for k in range(span.first_spring, span.last_spring):
+        state.tension[springs.slot[k]] = springs.tension[k]
 
 
 @inner_kernel

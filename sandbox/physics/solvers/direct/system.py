@@ -34,12 +34,14 @@ class Bodies(NamedTuple):
     pivot: Slots  # row of the one pinned particle that holds it; -1: none does, -2: several do
     anchored: Flags
     touched: Annotated[Flags, "bodies"]  # by contacts
+    work: Slots  # (b + 1,): see work_of_bodies
     underdamped: Annotated[Flags, "bodies"]  # some Cs is above its Cd
     inverted: Annotated[Flags, "bodies"]  # inverted, matched: see step_body.py
     matched: Annotated[Flags, "bodies"]
     energy0: Annotated[Floats, "bodies"]  # [J]: once forces, pins and drives have moved
     budget: Annotated[Floats, "bodies"]  # [J]: what its energy budget has
     unreturnable0: Annotated[Floats, "bodies"]  # [J]: what its springs count at the start and cannot give back
+    way: Annotated[Slots, "bodies"]  # alone, through the test
     unreturnable: Annotated[Floats, "bodies"]  # [J]: likewise, at the end
     spared: Annotated[Floats, "bodies"]  # [kg m^2/s]: see rigid_turn.py
     spin: Annotated[FloatRows, f"bodies, {SPIN_NUMBERS}"]  # likewise
@@ -112,7 +114,7 @@ class Constraints(NamedTuple):
     predicted: Annotated[Floats, "constraints"]
     impulse: Annotated[Floats, "constraints"]
     response: Annotated[FloatTables, "most_wide, answered, 2"]  # (w, n, 2): z of the wide ones
-    scale: Annotated[Floats, "most_wide"]  # 1 / (1 / K + g . z) of those
+    scale: Annotated[Floats, "constraints"]  # 1 / (1 / K + g . z) of wide ones
 
 
 class ShapeMatchGroups(NamedTuple):
@@ -158,6 +160,20 @@ class Span(NamedTuple):
     last_spring: int
     first_constraint: int
     last_constraint: int
+
+
+@inner_kernel
+def worth_of_sharing(first: int, last: int, bodies: Slots, work: Slots) -> int:
+    """What a parallel loop over bodies[first:last] could save: their work, but for the longest, which is shared itself.
+
+    work (b,): of each body. bodies: empty: all.
+    """
+    total = longest = 0
+    for k in range(first, last):
+        one = work[bodies[k] if bodies.shape[0] > 0 else k]
+        total += one
+        longest = max(longest, one)
+    return total - longest
 
 
 @inlined_kernel

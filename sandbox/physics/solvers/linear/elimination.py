@@ -30,7 +30,7 @@ BORDER_GUESS = 8
 # Places in `counts`: bodies, fronts, rows in borders, nodes that are ordered by minimum degree, blocks of their factor.
 BODIES, FRONTS, BORDERS, SMALL, BLOCKS, COUNTS = range(6)
 # Places in `whole` of a Tuning.
-SMALLEST, LEAF, HALVED, WIDEST_NARROW = range(4)
+SMALLEST, LEAF, DIVIDED, WIDEST_NARROW = range(4)
 # What ordering comes to.
 DONE, BORDERS_TOO_SHORT, BLOCKS_TOO_SHORT = range(3)
 
@@ -97,7 +97,7 @@ class Elimination(NamedTuple):
 class Tuning(NamedTuple):
     """Numbers that decide how a system is laid out.
 
-    whole (4,): SMALLEST_BODY, LEAF_SIZE, WORTH_HALVING (fronts.py), NARROW (layout.py); narrowest (1,):
+    whole (4,): SMALLEST_BODY, LEAF_SIZE, WORTH_DIVIDING (fronts.py), NARROW (layout.py); narrowest (1,):
     NARROWEST_BORDER.
     """
 

@@ -3,25 +3,25 @@
 A front holds the upper triangle, by rows, of what its particles and their border have become when they are eliminated:
 its own rows stay in `numbers`, the others wait in `remainder` for its parent. Rows are long, so that the inner loops,
 which run along them, use the full width of the machine; each number is still the same sum in the same order.
-The fronts of a large body lie in two halves, whose right sides do not share a sum until both are done: the second is
-one subtree, the first all that comes before it, and what lies above both is done after them. Source: Duff and Reid
-1983; George 1973.
+What a front leaves of a right side waits likewise in `carry`: sums follow the tree of fronts alone. So subtrees can be
+worked on at once: a body has stages of tasks, at first subtrees, then the fronts above those, level by level. Source:
+Duff and Reid 1983; George 1973.
 """
 
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, parallel
 from sandbox.physics.solvers.linear.elimination import DEEPEST, Dissection
 from sandbox.physics.solvers.linear.sparse_ldl import inverse_pivot
 from sandbox.physics.topology.sorting import place_among
 
-# Multiplications that the shorter half of a body's factorisation must have: lattices from 48x48 on have halves. They
-# are part of a tick's last bits.
-WORTH_HALVING = 3_000_000
-# Places in `lengths`: of numbers, of what remains, of a row of the widest front.
-NUMBERS, REMAINDER, WIDEST, LENGTHS = range(4)
+# Subtrees of a body at most, and multiplications that one must have to be divided further.
+MOST_SUBTREES = 16
+WORTH_DIVIDING = 400_000
+# Places in `lengths`: of numbers, of what remains, of a row of the widest front, tasks, stages, and lanes of scratch.
+NUMBERS, REMAINDER, WIDEST, TASKS, STAGES, LANES, LENGTHS = range(7)
 # Scalars eliminated at once: a row that waits is read and written once for all of them.
 PANEL = 8
 # Signed, for lengths.
@@ -29,8 +29,7 @@ PANEL_ROWS = int(PANEL)
 
 
 class FrontPlaces(NamedTuple):
-    """Where the fronts lie: see Fronts. By level: size of what the largest front leaves, and what lies before; before
-    (f+1,) is scratch."""
+    """Where the fronts lie, and their tasks: see Fronts; from size on scratch, by level, front and subtree."""
 
     of_row: Annotated[Slots, "rows"]
     diagonal: Annotated[Slots, "rows"]
@@ -38,10 +37,17 @@ class FrontPlaces(NamedTuple):
     width: Annotated[Slots, "fronts"]
     base: Annotated[Slots, "fronts"]
     remains: Annotated[Slots, "fronts"]
-    fork: Annotated[SlotRows, "fronts, 2"]
+    stages: Annotated[SlotRows, "fronts, 2"]
+    stage: Annotated[Slots, "fronts + 1"]
+    lane: Annotated[Slots, "fronts"]
+    stage_work: Annotated[SlotRows, "fronts, 2"]
+    task: Annotated[SlotRows, "fronts, 2"]
     size: Annotated[Slots, f"{DEEPEST}"]
-    beyond: Annotated[Slots, f"{DEEPEST}"]
-    before: Annotated[Slots, "fronts + 1"]
+    level_place: Annotated[Slots, f"{DEEPEST}"]
+    lowest: Annotated[Slots, "fronts"]  # front of a subtree
+    before: Annotated[Slots, "fronts + 1"]  # multiplications of all fronts before
+    height: Annotated[Slots, "fronts"]  # above subtrees; -1: within one
+    root: Annotated[Slots, f"{MOST_SUBTREES}"]
 
 
 class FrontBlocks(NamedTuple):
@@ -57,7 +63,7 @@ class FrontBlocks(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Scratch for work on a front."""
+    """Scratch for work on a front; of all fronts, a lane of it for each of the tasks that are worked on at once."""
 
     panel: Floats
     inverse: Floats
@@ -82,9 +88,13 @@ class Fronts(NamedTuple):
     numbers: Floats
     remainder: Floats
     inverses: Floats  # (2 n,): 1 / d
-    fork: SlotRows  # (f, 2): at the last front of a body, begin and end of its second half; equal: it has none
+    carry: FloatRows  # what a front leaves for each of its border rows of a right side
+    stages: SlotRows  # (f, 2): at the last front of a body, its first stage and one past its last
+    stage: Slots  # (s + 1,): first task of a stage
+    lane: Slots  # (s,): of its first task; the next tasks have the next ones
+    stage_work: SlotRows  # (s, 2): multiplications, of a factorisation and of a right side
+    task: SlotRows  # (t, 2): first front and one past the last
     scratch: Scratch
-    first_half_rhs: FloatRows  # (n, 2): of what lies above both halves, the right side that the first left
 
 
 @inner_kernel
@@ -93,39 +103,40 @@ def new_fronts(
 ) -> Fronts:  # fmt: skip
     """The fronts of a matrix of so many rows, as they were found; first_front (b+1,): of each body.
 
-    worth: multiplications that the shorter half must have.
+    worth: multiplications that a subtree must have to be divided.
     """
     fronts, lengths = found.first.shape[0], new_slots(arena, LENGTHS)
     places = new_tuple(FrontPlaces, arena, rows=rows, fronts=fronts)
     if not is_full(arena):
-        _lay_out_fronts(first_front, bodies, found, places, worth, lengths)
-    widest = lengths[WIDEST]
+        _lay_out_fronts(found, places, lengths)
+        for b in range(bodies):
+            if first_front[b] < first_front[b + 1]:
+                _lay_out_tasks(first_front[b], first_front[b + 1], found, places, worth, lengths)
+    stages, tasks, lanes, widest = lengths[STAGES], lengths[TASKS], lengths[LANES], lengths[WIDEST]
     return Fronts(
         places.of_row, places.diagonal, places.row_width, found.first, found.last, found.child, found.border_start,
         found.border, found.to_parent, places.width, places.base, places.remains, new_floats(arena, lengths[NUMBERS]),
-        new_floats(arena, lengths[REMAINDER]), new_floats(arena, 2 * rows), places.fork, Scratch(
-            new_floats(arena, PANEL_ROWS * widest), new_floats(arena, PANEL_ROWS), new_floats(arena, widest),
+        new_floats(arena, lengths[REMAINDER]), new_floats(arena, 2 * rows),
+        new_float_rows(arena, found.border.shape[0], 2), places.stages, places.stage[: stages + 1],
+        places.lane[:stages], places.stage_work[:stages], places.task[:tasks], Scratch(
+            new_floats(arena, lanes * PANEL_ROWS * widest), new_floats(arena, lanes * PANEL_ROWS),
+            new_floats(arena, lanes * widest),
         ),
-        new_float_rows(arena, rows, 2),
     )  # fmt: skip
 
 
 @inner_kernel
-def _lay_out_fronts(
-    first_front: Slots, bodies: int, found: Dissection, places: FrontPlaces, worth: int, lengths: Slots
-) -> None:
-    """Lay out the fronts of dissected bodies, and say in lengths (LENGTHS,) what they need.
-
-    first_front (b+1,): of each body. worth: multiplications that the shorter half must have.
-    """
+def _lay_out_fronts(found: Dissection, places: FrontPlaces, lengths: Slots) -> None:
+    # Where the numbers of fronts lie, and what they need, into lengths (LENGTHS,).
     for row in range(places.of_row.shape[0]):
         places.of_row[row] = places.diagonal[row] = places.row_width[row] = -1
-    total = 0
-    widest = 0
+    total = widest = 0
+    places.before[0] = 0
     for front in range(found.first.shape[0]):
         first = found.first[front]
         pivots = found.last[front] - first
-        width = 2 * (pivots + found.border_start[front + 1] - found.border_start[front])
+        border = 2 * (found.border_start[front + 1] - found.border_start[front])
+        width = 2 * pivots + border
         places.width[front] = width
         places.base[front] = total
         for k in range(pivots):
@@ -134,62 +145,104 @@ def _lay_out_fronts(
             places.row_width[first + k] = width
         total += 2 * pivots * width
         widest = max(widest, width)
+        # n pivots of a front of width w and border b: a sixth of w^3 - b^3 multiplications
+        places.before[front + 1] = places.before[front] + (width * width * width - border * border * border) // 6
+        left, right = found.child[front, 0], found.child[front, 1]
+        places.lowest[front] = places.lowest[left if left >= 0 else right] if max(left, right) >= 0 else front
     lengths[NUMBERS] = total
-    lengths[WIDEST] = widest
-    # Two fronts of a level wait at most, one per side; nothing lies below the widest front.
-    for level in range(DEEPEST):
-        places.size[level] = 0
-    for front in range(found.first.shape[0]):
-        border = 2 * (found.border_start[front + 1] - found.border_start[front])
-        level = found.place[front, 0]
-        places.size[level] = max(places.size[level], border * border)
-    total = 0
-    for level in range(DEEPEST):
-        places.beyond[level] = lengths[WIDEST] + 2 * total
-        total += places.size[level]
-    for front in range(found.first.shape[0]):
-        level = found.place[front, 0]
-        places.remains[front] = places.beyond[level] + found.place[front, 1] * places.size[level]
-    lengths[REMAINDER] = lengths[WIDEST] + 2 * total
-    for front in range(found.first.shape[0]):
-        places.fork[front, 0] = places.fork[front, 1] = 0
-    for b in range(bodies):
-        first = first_front[b]
-        last = first_front[b + 1]
-        if first < last:
-            begin, end = find_fork(first, last, found, places.before, worth)
-            places.fork[last - 1, 0] = begin
-            places.fork[last - 1, 1] = end
+    lengths[WIDEST] = lengths[REMAINDER] = widest
+    lengths[TASKS] = lengths[STAGES] = lengths[LANES] = 0
+    places.stage[0] = 0
 
 
 @inner_kernel
-def find_fork(begin: int, end: int, fronts: Dissection, before: Slots, worth: int) -> tuple[int, int]:
-    """The fronts between which the second half of a body lies, so that the shorter half is longest; equal: nowhere.
+def _lay_out_tasks(
+    first_front: int, last_front: int, found: Dissection, places: FrontPlaces, worth: int, lengths: Slots
+) -> None:  # fmt: skip
+    # The subtrees of one body as tasks, then what lies above them by height.
+    subtrees = divide(first_front, last_front, found.child, places, worth)
+    tallest = 0
+    for front in range(first_front, last_front):
+        if places.height[front] > 0:
+            for side in range(2):
+                child = found.child[front, side]
+                if child >= 0:
+                    places.height[front] = max(places.height[front], places.height[child] + 1)
+            tallest = max(tallest, places.height[front])
+    stage, task = lengths[STAGES], lengths[TASKS]
+    places.stages[last_front - 1, 0] = stage
+    for height in range(tallest + 1):
+        places.stage_work[stage, 0] = places.stage_work[stage, 1] = 0
+        for front in range(first_front, last_front):
+            if places.height[front] == height:
+                first = places.lowest[front] if height == 0 else front
+                places.task[task, 0] = first
+                places.task[task, 1] = front + 1
+                task += 1
+                places.stage_work[stage, 0] += places.before[front + 1] - places.before[first]
+                for part in range(first, front + 1):
+                    places.stage_work[stage, 1] += 2 * (found.last[part] - found.first[part]) * places.width[part]
+                lengths[REMAINDER] = _lay_out_remainders(first, front + 1, found, places, lengths[REMAINDER])
+        places.lane[stage] = lengths[LANES]
+        stage += 1
+        places.stage[stage] = task
+    places.stages[last_front - 1, 1] = stage
+    lengths[STAGES] = stage
+    lengths[TASKS] = task
+    lengths[LANES] += subtrees
 
-    begin, end: its fronts; before (f+1,): scratch; worth: multiplications that the shorter half must have.
+
+@inner_kernel
+def divide(first_front: int, last_front: int, child: SlotRows, places: FrontPlaces, worth: int) -> int:
+    """Divide a body into subtrees, into `height`: of their roots 0, of what lies above 1; how many there are.
+
+    The one of most multiplications first, as long as it has `worth` of them.
     """
-    total = 0
-    for front in range(begin, end):
-        border = 2 * (fronts.border_start[front + 1] - fronts.border_start[front])
-        width = 2 * (fronts.last[front] - fronts.first[front]) + border
-        before[front] = total
-        # n pivots of a front of width w and border b: a sixth of w^3 - b^3 multiplications
-        total += (width * width * width - border * border * border) // 6
-    before[end] = total
-    best = -1
-    most = 0
-    for front in range(begin, end):
-        left = fronts.child[front, 0]
-        right = fronts.child[front, 1]
-        if left >= 0 and right >= 0:
-            first, last = before[left + 1], before[right + 1]
-            shorter = min(first, last - first)
-            if shorter > most or best < 0:
-                best = front
-                most = shorter
-    if best < 0 or most < worth:
-        return begin, begin
-    return fronts.child[best, 0] + 1, fronts.child[best, 1] + 1
+    for front in range(first_front, last_front):
+        places.height[front] = -1
+    places.root[0] = last_front - 1
+    count = 1
+    while count < MOST_SUBTREES:
+        most, chosen = worth, -1
+        for k in range(count):
+            root = places.root[k]
+            work = places.before[root + 1] - places.before[places.lowest[root]]
+            if work > most and max(child[root, 0], child[root, 1]) >= 0:
+                most, chosen = work, k
+        if chosen < 0:
+            break
+        root = places.root[chosen]
+        places.height[root] = 1
+        left, right = child[root, 0], child[root, 1]
+        places.root[chosen] = left if left >= 0 else right
+        if min(left, right) >= 0:
+            places.root[count] = right
+            count += 1
+    for k in range(count):
+        places.height[places.root[k]] = 0
+    return count
+
+
+@inner_kernel
+def _lay_out_remainders(first: int, last: int, found: Dissection, places: FrontPlaces, total: int) -> int:
+    # Where in `remainder`, from total on, what the fronts of one task leave waits; where that ends. What the last one
+    # leaves waits for another task; of the others two of a level wait at most, one per side.
+    for level in range(DEEPEST):
+        places.size[level] = 0
+    for front in range(first, last - 1):
+        border = 2 * (found.border_start[front + 1] - found.border_start[front])
+        level = found.place[front, 0]
+        places.size[level] = max(places.size[level], border * border)
+    border = 2 * (found.border_start[last] - found.border_start[last - 1])
+    places.remains[last - 1] = total
+    total += border * border
+    for level in range(DEEPEST):
+        places.level_place[level] = total
+        total += 2 * places.size[level]
+    for front in range(first, last - 1):
+        level = found.place[front, 0]
+        places.remains[front] = places.level_place[level] + found.place[front, 1] * places.size[level]
+    return total
 
 
 @inner_kernel
@@ -240,40 +293,58 @@ def subtract_pair(
 @inner_kernel
 def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: FloatRows) -> None:
     """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
-    first_front = fronts.of_row[first_row]
     body = fronts.of_row[last_row - 1]
-    begin, above = fronts.fork[body, 0], fronts.fork[body, 1]
-    if begin < above:
-        _eliminate(factored, first_front, begin, fronts, change)
-        for row in range(fronts.first[above], last_row):
-            for axis in range(2):
-                fronts.first_half_rhs[row, axis] = change[row, axis]
-                change[row, axis] = 0.0
-        _eliminate(factored, begin, above, fronts, change)
-        for row in range(fronts.first[above], last_row):
-            for axis in range(2):
-                change[row, axis] += fronts.first_half_rhs[row, axis]
-        _eliminate(factored, above, body + 1, fronts, change)
-    else:
-        _eliminate(factored, first_front, body + 1, fronts, change)
-    _substitute_fronts(first_front, body + 1, fronts, change)
+    first, last = fronts.stages[body, 0], fronts.stages[body, 1]
+    for stage in range(first, last):
+        tasks = fronts.stage[stage + 1] - fronts.stage[stage]
+        for k in parallel(tasks, fronts.stage_work[stage, 1 if factored else 0]):
+            _eliminate(factored, stage, k, fronts, change)
+    for stage in range(last - 1, first - 1, -1):
+        tasks = fronts.stage[stage + 1] - fronts.stage[stage]
+        for k in parallel(tasks, fronts.stage_work[stage, 1]):
+            _substitute(stage, k, fronts, change)
 
 
 @inner_kernel
-def _eliminate(factored: bool, first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
-    if factored:
-        for front in range(first_front, last_front):
-            _eliminate_rows(front, fronts, change)
-    else:
-        _factorise_fronts(first_front, last_front, fronts, change)
+def _eliminate(factored: bool, stage: int, k: int, fronts: Fronts, change: FloatRows) -> None:
+    # The fronts of one task of a stage: they begin to solve for their rows of change.
+    task, scratch = fronts.stage[stage] + k, _scratch_of(stage, k, fronts)
+    for front in range(fronts.task[task, 0], fronts.task[task, 1]):
+        if not factored:
+            _factorise(front, scratch, fronts)
+        _eliminate_rows(front, scratch.vector, fronts, change)
 
 
 @inner_kernel
-def _eliminate_rows(front: int, fronts: Fronts, change: FloatRows) -> None:
-    # Of change, by a factored front.
-    vector, numbers, inverses = fronts.scratch.vector, fronts.numbers, fronts.inverses
-    _gather(front, fronts, vector, change)
+def _scratch_of(stage: int, k: int, fronts: Fronts) -> Scratch:
+    # The scratch of one task of a stage.
+    panel, inverse, vector = fronts.scratch.panel, fronts.scratch.inverse, fronts.scratch.vector
+    lane, widest = fronts.lane[stage] + k, vector.shape[0] * PANEL // inverse.shape[0]
+    return Scratch(
+        panel[lane * PANEL * widest : (lane + 1) * PANEL * widest], inverse[lane * PANEL : (lane + 1) * PANEL],
+        vector[lane * widest : (lane + 1) * widest],
+    )  # fmt: skip
+
+
+@inner_kernel
+def _eliminate_rows(front: int, vector: Floats, fronts: Fronts, change: FloatRows) -> None:
+    # Of change, by a factored front; what is left of its border waits in `carry`.
+    numbers, inverses, carry = fronts.numbers, fronts.inverses, fronts.carry
     width, first_inverse = fronts.width[front], 2 * fronts.first[front]
+    k = 0
+    for row in range(fronts.first[front], fronts.last[front]):
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
+        k += 2
+    for j in range(k, width):
+        vector[j] = 0.0
+    for side in range(2):
+        below = fronts.child[front, side]
+        if below >= 0:
+            for at in range(fronts.border_start[below], fronts.border_start[below + 1]):
+                j = 2 * fronts.to_parent[at]
+                vector[j] += carry[at, 0]
+                vector[j + 1] += carry[at, 1]
     for p in range(0, 2 * (fronts.last[front] - fronts.first[front]), 2):
         row = fronts.base[front] + p * width
         x = vector[p] * inverses[first_inverse + p]
@@ -286,60 +357,40 @@ def _eliminate_rows(front: int, fronts: Fronts, change: FloatRows) -> None:
         change[row, 1] = vector[k + 1]
         k += 2
     for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
-        row = fronts.border[at]
-        change[row, 0] = vector[k]
-        change[row, 1] = vector[k + 1]
+        carry[at, 0] = vector[k]
+        carry[at, 1] = vector[k + 1]
         k += 2
 
 
 @inner_kernel
-def _gather(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
-    k = 0
-    for row in range(fronts.first[front], fronts.last[front]):
-        vector[k] = change[row, 0]
-        vector[k + 1] = change[row, 1]
-        k += 2
-    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
-        row = fronts.border[at]
-        vector[k] = change[row, 0]
-        vector[k + 1] = change[row, 1]
-        k += 2
-
-
-@inner_kernel
-def _factorise_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
-    """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
-    panel, inverse, numbers, remainder = fronts.scratch.panel, fronts.scratch.inverse, fronts.numbers, fronts.remainder
-    stride = fronts.scratch.vector.shape[0]
-    for front in range(first_front, last_front):
-        pivots = 2 * (fronts.last[front] - fronts.first[front])
-        width = fronts.width[front]
-        base = fronts.base[front]
-        place = fronts.remains[front]
-        border = width - pivots
-        for at in range(place, place + border * border):
-            remainder[at] = 0.0
-        for side in range(2):
-            below = fronts.child[front, side]
-            if below >= 0:
-                _add_child(
-                    numbers, base, remainder, place, pivots, width, fronts.remains[below], fronts.to_parent,
-                    fronts.border_start[below], fronts.border_start[below + 1],
-                )  # fmt: skip
-        first_inverse = 2 * fronts.first[front]
-        for begin in range(0, pivots, PANEL):
-            end = min(begin + PANEL, pivots)
-            _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse)
-            for p in range(begin, end):
-                fronts.inverses[first_inverse + p] = inverse[p - begin]
-            for i in range(end, pivots, 2):
-                row = base + i * width
-                _subtract_panel(numbers, row, row + width, panel, stride, inverse, i, width)
-            for i in range(pivots, width, 2):
-                # Columns of the remainder count from the first border row; no place in it is below the widest front.
-                row = place + (i - pivots) * border - pivots
-                _subtract_panel(remainder, row, row + border, panel, stride, inverse, i, width)
-        _eliminate_rows(front, fronts, change)
+def _factorise(front: int, scratch: Scratch, fronts: Fronts) -> None:
+    # Factor one front in place.
+    panel, inverse, numbers, remainder = scratch.panel, scratch.inverse, fronts.numbers, fronts.remainder
+    stride, pivots = scratch.vector.shape[0], 2 * (fronts.last[front] - fronts.first[front])
+    width, base, place = fronts.width[front], fronts.base[front], fronts.remains[front]
+    border = width - pivots
+    for at in range(place, place + border * border):
+        remainder[at] = 0.0
+    for side in range(2):
+        below = fronts.child[front, side]
+        if below >= 0:
+            _add_child(
+                numbers, base, remainder, place, pivots, width, fronts.remains[below], fronts.to_parent,
+                fronts.border_start[below], fronts.border_start[below + 1],
+            )  # fmt: skip
+    first_inverse = 2 * fronts.first[front]
+    for begin in range(0, pivots, PANEL):
+        end = min(begin + PANEL, pivots)
+        _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse)
+        for p in range(begin, end):
+            fronts.inverses[first_inverse + p] = inverse[p - begin]
+        for i in range(end, pivots, 2):
+            row = base + i * width
+            _subtract_panel(numbers, row, row + width, panel, stride, inverse, i, width)
+        for i in range(pivots, width, 2):
+            # Columns of the remainder count from the first border row; no place in it is below the widest front.
+            row = place + (i - pivots) * border - pivots
+            _subtract_panel(remainder, row, row + border, panel, stride, inverse, i, width)
 
 
 @inner_kernel
@@ -448,11 +499,21 @@ def _subtract_panel(
 
 
 @inner_kernel
-def _substitute_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
-    """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
-    vector, numbers, inverses = fronts.scratch.vector, fronts.numbers, fronts.inverses
-    for front in range(last_front - 1, first_front - 1, -1):
-        _gather(front, fronts, vector, change)
+def _substitute(stage: int, number: int, fronts: Fronts, change: FloatRows) -> None:
+    # The fronts of one task of a stage: they finish solving for their rows of change.
+    task, vector = fronts.stage[stage] + number, _scratch_of(stage, number, fronts).vector
+    numbers, inverses = fronts.numbers, fronts.inverses
+    for front in range(fronts.task[task, 1] - 1, fronts.task[task, 0] - 1, -1):
+        k = 0
+        for row in range(fronts.first[front], fronts.last[front]):
+            vector[k] = change[row, 0]
+            vector[k + 1] = change[row, 1]
+            k += 2
+        for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
+            row = fronts.border[at]
+            vector[k] = change[row, 0]
+            vector[k + 1] = change[row, 1]
+            k += 2
         # Two rows at once, in four sums each: the order of a sum is part of the result.
         width, first_inverse = fronts.width[front], 2 * fronts.first[front]
         for p in range(2 * (fronts.last[front] - fronts.first[front]) - 2, -1, -2):

@@ -94,7 +94,7 @@ class Matrix(NamedTuple):
     where: Slots  # (n,): scratch of that
     diagonal: FloatRows  # (n, 3): symmetric blocks xx, xy, yy
     lower: FloatRows  # (b, 4): blocks below, xx, xy, yx, yy
-    scaled: FloatRows  # (longest column, 4): scratch
+    scaled: FloatRows  # (n, 4): scratch, of a body that of its rows
 
 
 @inner_kernel
@@ -324,7 +324,7 @@ def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: 
     """
     blocks = int(columns.start[order.shape[0]])
     column_start, pairs, where = new_slots(arena, rows + 1), new_slots(arena, rows + 1), new_slots(arena, rows)
-    row, longest, updates = new_slots(arena, blocks), 0, 0
+    row, updates = new_slots(arena, blocks), 0
     scratch = mark(arena)
     same, merge_buffer = new_slots(arena, rows), new_slots(arena, rows)
     if not is_full(arena):
@@ -337,7 +337,6 @@ def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: 
         pairs[0] = 0
         for j in range(rows):
             length = column_start[j + 1]
-            longest = max(longest, length)
             pairs[j + 1] = pairs[j] + length * (length - 1) // 2
             column_start[j + 1] += column_start[j]
         for step in range(order.shape[0]):
@@ -361,7 +360,7 @@ def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: 
                     found += 1
     return Matrix(
         column_start, row, pairs, target, where, new_float_rows(arena, rows, 3), new_float_rows(arena, blocks, 4),
-        new_float_rows(arena, longest, 4),
+        new_float_rows(arena, rows, 4),
     )  # fmt: skip
 
 
@@ -392,7 +391,7 @@ def factorise(first: int, last: int, matrix: Matrix) -> None:
         begin = column_start[j]
         end = column_start[j + 1]
         for at in range(begin, end):
-            k = at - begin
+            k = first + at - begin
             lower[at, 1] -= slant * lower[at, 0]
             lower[at, 3] -= slant * lower[at, 2]
             scaled[k, 0] = lower[at, 0] * inverse_x
@@ -403,7 +402,7 @@ def factorise(first: int, last: int, matrix: Matrix) -> None:
         found = matrix.target_start[j]
         known = target.shape[0] > 0
         for at in range(begin, end):
-            k = at - begin
+            k = first + at - begin
             a0 = lower[at, 0]
             a1 = lower[at, 1]
             a2 = lower[at, 2]
@@ -415,15 +414,15 @@ def factorise(first: int, last: int, matrix: Matrix) -> None:
             diagonal[i, 0] -= scaled[k, 0] * a0 + scaled[k, 1] * a1
             diagonal[i, 1] -= scaled[k, 0] * a2 + scaled[k, 1] * a3
             diagonal[i, 2] -= scaled[k, 2] * a2 + scaled[k, 3] * a3
-            for below in range(k + 1, end - begin):
-                block = target[found] if known else where[row[begin + below]]
+            for below in range(k + 1, first + end - begin):
+                block = target[found] if known else where[row[begin + below - first]]
                 found += 1
                 lower[block, 0] -= scaled[below, 0] * a0 + scaled[below, 1] * a1
                 lower[block, 1] -= scaled[below, 0] * a2 + scaled[below, 1] * a3
                 lower[block, 2] -= scaled[below, 2] * a0 + scaled[below, 3] * a1
                 lower[block, 3] -= scaled[below, 2] * a2 + scaled[below, 3] * a3
         for at in range(begin, end):
-            k = at - begin
+            k = first + at - begin
             lower[at, 0] = scaled[k, 0]
             lower[at, 1] = scaled[k, 1]
             lower[at, 2] = scaled[k, 2]
