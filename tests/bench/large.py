@@ -5,7 +5,6 @@ take their ticks in turns, so that they meet the same load of the machine: read 
 """
 
 import importlib.util
-import math
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -78,47 +77,34 @@ def row(name: str, found: Mapping[str, float]) -> str:
     return f"| {name} | {' | '.join(cells)} |"
 
 
-def plot(sides: Sequence[int], rows: Sequence[Mapping[str, float]]) -> str:
-    """A picture of the milliseconds of lattices by their side, both axes logarithmic: SVG."""
-    width, height, left, bottom = 560, 340, 60, 40
-    low, high = 0.3, 300.0
+def plot(sides: Sequence[int], rows: Sequence[Mapping[str, float]]) -> None:
+    """Draw the milliseconds of lattices by their side, both axes logarithmic."""
+    from matplotlib import pyplot
 
-    def place(side: float, value: float) -> tuple[float, float]:
-        x = left + (width - left - 120) * math.log(side / sides[0]) / math.log(sides[-1] / sides[0])
-        y = height - bottom - (height - bottom - 20) * math.log(value / low) / math.log(high / low)
-        return x, y
-
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">'
-    parts = [head, f'<rect width="{width}" height="{height}" fill="#fff"/>']
-    for value in (1, 10, 100):
-        (x, y), (end, _) = place(sides[0], value), place(sides[-1], value)
-        parts.append(f'<path d="M{x:.0f} {y:.1f}H{end:.0f}" stroke="#ddd"/>')
-        parts.append(f'<text x="{x - 8:.0f}" y="{y + 4:.1f}" text-anchor="end">{value} ms</text>')
-    for side in sides:
-        x, _ = place(side, 1.0)
-        parts.append(f'<text x="{x:.0f}" y="{height - 14}" text-anchor="middle">{side}²</text>')
-    curves = (("1", "1 thread", "#c2410c"), ("2", "2 threads", "#0e7490"), ("pymunk", "pymunk", "#999"))
-    for key, words, colour in curves:
-        points = [place(side, each[key]) for side, each in zip(sides, rows, strict=True) if key in each]
-        if points:
-            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-            parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
-            x, y = points[-1]
-            parts.append(f'<text x="{x + 8:.0f}" y="{y + 4:.1f}" fill="{colour}">{words}</text>')
-    return "\n".join([*parts, "</svg>\n"])
+    figure, axes = pyplot.subplots(figsize=(6.4, 3.8))
+    for key, words in (("1", "1 thread"), ("2", "2 threads"), ("box2d 1", "Box2D v3"), ("pymunk", "pymunk")):
+        points = [(side, each[key]) for side, each in zip(sides, rows, strict=True) if key in each]
+        axes.loglog(*np.array(points).reshape(-1, 2).T, marker="o", label=words)
+    axes.set_xticks(sides, [f"{side}²" for side in sides])
+    axes.minorticks_off()
+    axes.set_ylabel("ms a tick")
+    axes.legend()
+    figure.tight_layout()
+    figure.savefig(PLOT, metadata={"Date": None})
 
 
 def main() -> None:
     """Print the table, and draw lattices if all sides are measured."""
     sides = tuple(map(int, sys.argv[1].split(","))) if len(sys.argv) > 1 else SIDES
-    print("| scene | 1 thread [ms] | 2 threads | gain | Box2D, 1 thread | 2 threads | pymunk |\n|---|---|---|---|---|---|---|")
+    print("| scene | 1 thread [ms] | 2 threads | gain | Box2D, 1 thread | 2 threads | pymunk |")
+    print("|---|---|---|---|---|---|---|")
     rows = []
     for side in sides:
         scene = scenes.lattice(side)
         rows.append(in_turns(both(scene.world) | peers(scene)))
         print(row(f"lattice {side} x {side}", rows[-1]), flush=True)
     if sides == SIDES:
-        PLOT.write_text(plot(sides, rows), encoding="utf-8")
+        plot(sides, rows)
     net = scenes.joint_grid(100)
     print(row("joint grid, from the start", in_turns(both(net.world) | peers(net))), flush=True)
     print(row("joint grid that swings, 4 s on", in_turns(both(net.world, 240))), flush=True)
