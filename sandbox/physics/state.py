@@ -184,6 +184,7 @@ class StateArrays:
     ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True, of=range(LONGEST_RAMP + 1))
     belt = _array("belt", S, F64, "m/s", "how fast its surface runs as an edge, to the right of who stands on it", topology=True, sparse=True)
     spring_untouchable = _array("spring_untouchable", S, BOOL, "", "whether the level lets no hand touch it", sparse=True)
+    is_split = _array("split", S, BOOL, "", "whether a cut made it, along a side of a triangle that it divided", sparse=True)
 
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True, of=range(2))
     constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True, of=C)

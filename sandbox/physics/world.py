@@ -8,16 +8,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import Floats, SlotRows, Slots, empty
 from sandbox.physics.breaking import StrainLimits, unlimited
-from sandbox.physics.commands.command import PROGRAM, Commanded, solve
+from sandbox.physics.commands.command import NO_ROWS, PROGRAM, Commanded, solve
 from sandbox.physics.commands.command_table import (
     KINDS,
     OF_HANDS,
     OF_SOLVER,
     OF_TOPOLOGY,
+    RefusedCommand,
     carry_out,
     check_fields,
     numbers_of,
 )
+from sandbox.physics.commands.cutting import ASKED
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraints_of, rests_of
 from sandbox.physics.driving import Actuators, drive_muscles, drives_of
 from sandbox.physics.jit import bundle
@@ -42,6 +44,8 @@ _GRAB_NAMES = [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
 # weight. Lower lags behind the mouse, higher tears what is soft.
 HAND_STRENGTH = 100.0
 
+# What a cut may need more rows of.
+_OF_CUTS = (Family.PARTICLE, Family.SPRING, Family.CONSTRAINT, Family.CORNER)
 # Attributes that another value of counts as a change of topology. From a step's contacts nothing is derived.
 _WATCHED = frozenset(
     {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules", "ways", "area_constraints"}
@@ -447,7 +451,16 @@ class World(StateArrays):
         )  # fmt: skip
         values.setdefault("duration", 0)
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
-        numbers = carry_out(self.lent, giver, name, values, self)
+        try:
+            numbers = carry_out(self.lent, giver, name, values, self)
+        except RefusedCommand as refused:
+            if refused.reason != NO_ROWS:
+                raise
+            rows = refused.numbers[-ASKED:]
+            for family, count in zip(_OF_CUTS, map(int, rows), strict=True):
+                grow(self, family, count, {})
+            numbers = carry_out(self.lent, giver, name, {**values, "rows": rows}, self)
+            self.name_slots_to(self.particle_count, self.spring_count)
         changes = KINDS[name].changes
         if changes == OF_SOLVER:
             self._multiply_contacts(numbers[-1])
@@ -466,9 +479,12 @@ class World(StateArrays):
         """Let a pinned particle move again, with the mass it has."""
         self.command("unpin", particle=particle)
 
-    def cut(self, springs: Sequence[int] | Slots) -> None:
-        """Take springs out of the world, and the constraints that they were a side of; their slots stay."""
-        self.command("cut_springs", springs=springs)
+    def cut(self, springs: Sequence[int] | Slots, at: Sequence[float] | Floats = ()) -> None:
+        """Take springs out of the world, and the constraints that they were a side of; their slots stay.
+
+        at: where each is cut, as a share of it from its first end. What keeps areas is parted there, see cutting.py.
+        """
+        self.command("cut_springs", springs=springs, at=at)
 
     def break_springs(self, springs: Sequence[int] | Slots) -> None:
         """Take out springs that broke by themselves: the pieces of a body keep its energy."""
