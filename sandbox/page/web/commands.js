@@ -222,6 +222,13 @@ export class Commands {
       sag != null && first ? this.#about.messages.butRigid : ''];
   }
 
+  /** Whether a kernel has done nothing, since it needs more rows.
+   * @type {(result: number) => boolean} */
+  wantsRows(result) {
+    const { reasons, noRows } = this.#about.refusals;
+    return result < 0 && -result % reasons === noRows;
+  }
+
   /** Whether a kernel has done it: throws in words where it has not. answers: its numbers afterwards.
    * @type {(record: Command, packed: Packed, result: number, answers: Float64Array) => void} */
   answer(record, { slots, numbers }, result, answers) {
@@ -245,7 +252,10 @@ export class Commands {
    * @type {(record: Command) => NamedRecord} */
   named(record) {
     const names = this.#names, kinds = new Map(this.#named(record.type));
-    const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
+    /** @type {(field: string, value: unknown) => boolean} */
+    const isSaid = (field, value) => value !== null && value !== undefined
+      && (kinds.has(field) || !Array.isArray(value) || value.length > 0);
+    const entries = Object.entries(record).filter(([field, value]) => isSaid(field, value));
     return { type: record.type, ...Object.fromEntries(entries.map(([field, value]) => {
       const kind = kinds.get(field)?.names;
       if (!kind) return [field, value];

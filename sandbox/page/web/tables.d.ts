@@ -46,6 +46,7 @@ export interface StateArrays {
   ramp_ticks: Int32Array;
   belt: Float64Array;
   spring_untouchable: Uint8Array;
+  is_split: Uint8Array;
   constraint_kind: Int8Array;
   constraint_first: Int32Array;
   constraint_corners: Int32Array;
@@ -118,6 +119,7 @@ export interface Commands {
   cut_springs: {
     type: 'cut_springs';
     springs: number[];
+    at?: number[];
   };
   break_springs: {
     type: 'break_springs';

@@ -2,7 +2,7 @@
 import { Commands, Refusal } from './commands.js';
 import { formCounts, formNames, formRows } from './forms.js';
 import { Hashes, isEqual } from './hash.js';
-import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, namesOf, packed, seen } from './kit.js';
+import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, namesOf, packed, seen, unused } from './kit.js';
 import { act } from './rules.js';
 /**
  * @import { About, AnyArray, Column, Command, Counts, Done, Joined, Kernels, Kit, Level, NameKind, SavedState,
@@ -19,8 +19,10 @@ const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_AREN
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.kept.feature',
   'collisions.kept.impulse', 'collisions.kept.impact']);
-// Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
-const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
+// Families of which a cut may need more rows.
+const ROWS_OF_CUT = 4;
+// Room for the words of arguments of a call.
+const ARGUMENTS = 64, NONE = new Float64Array();
 /** @type {(size: number) => number} */
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
@@ -96,7 +98,7 @@ export class World {
     this.#second = { ...about.second.particle };
     this.commands = new Commands(about, this.names, { ...about.second, particle: this.#second });
     this.#arguments = aligned(kernels.__heap_base.value);
-    this.#base = aligned(this.#arguments + (ARGUMENTS + RECORD) * WORD);
+    this.#base = aligned(this.#arguments + ARGUMENTS * WORD);
     this.#end = this.#base;
     this.#reserve(image.length);
     const memory = new Uint8Array(kernels.memory.buffer);
@@ -307,12 +309,16 @@ export class World {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate, materials: this.counts.material });
     const { code, slots, numbers, changes } = packed;
-    const at = this.#arguments + ARGUMENTS * WORD, [listed] = this.#lent(BigInt64Array.from(slots, BigInt));
-    new Float64Array(this.#kernels.memory.buffer, at, numbers.length).set(numbers);
-    /** @type {(number | Span)[]} */
-    const given = [giver, code, listed, [at, numbers.length, WORD]];
-    const result = this.#inArena('command', [this.#block], ...given);
-    const answers = new Float64Array(this.#kernels.memory.buffer, at, numbers.length);
+    const given = this.#lent(BigInt64Array.from(slots, BigInt), Float64Array.from(numbers));
+    const call = () => this.#inArena('command', [this.#block], giver, code, ...given);
+    const answered = () => new Float64Array(this.#kernels.memory.buffer, given[1][0], numbers.length);
+    let result = call();
+    if (this.commands.wantsRows(result)) {
+      // The numbers say then how many there are.
+      this.#addRows(Array.from(answered().slice(-ROWS_OF_CUT)));
+      result = call();
+    }
+    const answers = answered();
     this.commands.answer(record, packed, result, answers);
     if (changes === 'solver') {
       const factor = answers[numbers.length - 1];
@@ -335,6 +341,19 @@ export class World {
     for (const [kind, names] of /** @type {[NameKind, string[]][]} */ (Object.entries(added))) {
       this.names[kind] = [...this.names[kind], ...names];
     }
+  }
+
+  /** Add rows that have no names but of their own, as a cut wants them.
+   * @type {(more: number[]) => void} */
+  #addRows([particles, springs, constraints, corners]) {
+    const { particle, spring, constraint, corner, breakable } = this.counts, { names } = this;
+    const then = { ...this.counts, particle: particle + particles, spring: spring + springs,
+      constraint: constraint + constraints, corner: corner + corners, breakable: breakable ? spring + springs : 0 };
+    this.#grow(then);
+    this.counts = then;
+    const dot = unused(names.particle, /^\+\.(\d+)$/), colon = unused(names.spring, /^\+:(\d+)$/);
+    this.#name({ particle: Array.from({ length: particles }, (_, k) => `+.${dot + k}`),
+      spring: Array.from({ length: springs }, (_, k) => `+:${colon + k}`) });
   }
 
   // Give hands their slots, in a level that began with nothing, once there is something to hold.

@@ -8,8 +8,8 @@ import numpy as np
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats
 from sandbox.physics.commands import command
-from sandbox.physics.commands.cutting import ASKED
 from sandbox.physics.commands.command import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
+from sandbox.physics.commands.cutting import ASKED
 from sandbox.physics.keeping.arguments import (
     CONSTRAINTS,
     FARTHEST,
@@ -81,8 +81,7 @@ _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
 _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "substeps", "?warm_start", "duration")
 # Numbers that a kernel writes, and how many they are: by what the host is to multiply kept impulses of contacts; the
-# nearest firmness that can be had; rows that a cut needs of particles, springs, constraints and corners, which are given
-# then.
+# nearest firmness that can be had; rows of particles, springs, constraints and corners that a cut needs, or is given.
 ANSWERS = {"contacts": 1, "nearest": 2, "rows": ASKED}
 # What a world says itself of every command, if nobody else does.
 _OF_WORLD = {"first_cursor", "first_spring", "tick_rate", "materials", "duration"}

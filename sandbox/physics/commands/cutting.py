@@ -44,6 +44,8 @@ ROWS_MISSING, TOO_MANY = 1, 2
 # Where the outline is cut nearer to a particle than this share of a spring, it is cut there; where anything else is cut
 # as near to the outline, it is cut as far from it, so that no piece is of no size.
 NEAR_BORDER = 0.06
+# Nearest to a particle that anything is cut, as a share of a spring.
+NEAREST = 1e-6
 # What a particle gives away of its mass at most, to new ones that lie on its springs.
 GIVEN = 0.5
 
@@ -165,10 +167,11 @@ def _place_cuts(state: State, springs: Slots, numbers: Floats, work: LineScratch
     for k in range(springs.shape[0]):
         s = springs[k]
         end = state.particle_a[s] if work.share[s] < 0.5 else state.particle_b[s]
-        near = NEAR_BORDER if work.is_border[end] and not (_is_border(state, s) and work.halves[end] == 1) else 0.0
-        if _is_border(state, s) and near == 0.0 and not NEAR_BORDER <= work.share[s] <= 1.0 - NEAR_BORDER:
+        if _is_border(state, s) and work.halves[end] == 1 and not NEAR_BORDER <= work.share[s] <= 1.0 - NEAR_BORDER:
             work.share[s] = 0.0 if work.share[s] < 0.5 else 1.0
-        work.share[s] = min(max(work.share[s], near), 1.0 - near)
+        else:
+            near = NEAR_BORDER if work.is_border[end] else NEAREST
+            work.share[s] = min(max(work.share[s], near), 1.0 - near)
     for p in range(work.halves.shape[0]):
         work.halves[p] = 0
 
@@ -199,11 +202,10 @@ def _acting_between(state: State, work: LineScratch, p: int, q: int) -> bool:
 
 @inner_kernel
 def _is_near(state: State, work: LineScratch, k: int) -> bool:
-    first = state.constraint_first[k]
+    first, is_near = state.constraint_first[k], False
     for c in range(first, first + TRIANGLE_CORNERS):
-        if work.is_near[state.corner_particle[c]]:
-            return True
-    return False
+        is_near = is_near or work.is_near[state.corner_particle[c]]
+    return is_near
 
 
 @inner_kernel
@@ -231,7 +233,8 @@ def _divide(state: State, work: LineScratch, mesh: SplitMesh) -> None:
         a, b, c = first, first + (2 if turned else 1), first + (1 if turned else 2)
         a, b, c = state.corner_particle[a], state.corner_particle[b], state.corner_particle[c]
         p, q, r = _middle(state, work, mesh, a, b), _middle(state, work, mesh, b, c), _middle(state, work, mesh, c, a)
-        add_triangle(mesh, _own(state, work, mesh, a), _own(state, work, mesh, b), _own(state, work, mesh, c), p, q, r, k)
+        a, b, c = _own(state, work, mesh, a), _own(state, work, mesh, b), _own(state, work, mesh, c)
+        add_triangle(mesh, a, b, c, p, q, r, k)
 
 
 @inner_kernel
@@ -607,8 +610,10 @@ def _settle_motion(state: State, good: GoodValues, work: LineScratch, before: Mo
     for p in range(state.owner.shape[0]):
         if work.torn[p] >= 0:
             for axis in range(2 if state.inverse_mass[p] > 0.0 else 0):
-                away = before.about_y + middle_y - state.position[p, 1] if axis == 0 else (
-                    state.position[p, 0] - before.about_x - middle_x
+                away = (
+                    before.about_y + middle_y - state.position[p, 1]
+                    if axis == 0
+                    else (state.position[p, 0] - before.about_x - middle_x)
                 )
                 change = (x if axis == 0 else y) + turning * away
                 state.velocity[p, axis] += change

@@ -96,7 +96,9 @@ def add_triangle(mesh: SplitMesh, a: int, b: int, c: int, p: int, q: int, r: int
         _add(mesh, q, c, r, source, True)
         _add(mesh, p, q, r, source, True)
         return
-    if _squared(p, c, mesh.form) < _squared(b, r, mesh.form):
+    # Of the two ways to halve what is left that whose worst triangle is better.
+    one = min(_share(p, b, c, mesh.form), _share(p, c, r, mesh.form))
+    if one > min(_share(p, b, r, mesh.form), _share(b, c, r, mesh.form)):
         _add(mesh, p, b, c, source, True)
         _add(mesh, p, c, r, source, True)
     else:
@@ -240,7 +242,7 @@ def _has(mesh: SplitMesh, t: int, v: int) -> bool:
 
 @inner_kernel
 def _list_star(mesh: SplitMesh, v: int, w: int, first: int) -> int:
-    # List the triangles at a vertex, and of those at another one alone, from a place of `fan` on; the place behind them.
+    # List the triangles at a vertex but not at w, from a place of `fan` on; the place behind them.
     for t in range(mesh.count[TRIANGLES]):
         if mesh.is_there[t] and _has(mesh, t, v) and (w < 0 or not _has(mesh, t, w)):
             mesh.fan[first] = t
@@ -332,9 +334,14 @@ def _lies_between(x: int, y: int, z: int, allowed: float, place: FloatRows) -> b
 
 @inner_kernel
 def _share_of(mesh: SplitMesh, t: int, x: int, y: int, place: FloatRows) -> float:
-    # What a triangle has of the square of its longest side, with its corner x at the place of y.
+    # `_share` of a triangle with its corner x at the place of y.
     a, b, c = mesh.corner[t, 0], mesh.corner[t, 1], mesh.corner[t, 2]
-    a, b, c = y if a == x else a, y if b == x else b, y if c == x else c
+    return _share(y if a == x else a, y if b == x else b, y if c == x else c, place)
+
+
+@inner_kernel
+def _share(a: int, b: int, c: int, place: FloatRows) -> float:
+    # What a triangle has of the square of its longest side.
     ux, uy = place[b, 0] - place[a, 0], place[b, 1] - place[a, 1]
     vx, vy = place[c, 0] - place[a, 0], place[c, 1] - place[a, 1]
     longest = max(max(ux * ux + uy * uy, vx * vx + vy * vy), _squared(b, c, place))

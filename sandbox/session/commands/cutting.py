@@ -8,7 +8,6 @@ from pydantic import Field
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import SpringSlot
 
-
 ShareOfSpring = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
