@@ -37,8 +37,9 @@ export function splitSprings(world, active) {
  * @type {<B extends Body | FilledBody>(body: B, split: SpringEnds[], world: World) => B} */
 export function withSplit(body, split, world) {
   if (!('triangles' in body) || !body.triangles) return body;
-  const owner = world.view('state.owner'), own = new Set(body.slots.map((slot) => owner[slot]));
-  const springs = split.filter(([, a]) => own.has(owner[a]));
+  const from = world.view('state.split_from'), own = new Set(body.slots);
+  const isOwn = (/** @type {number} */ slot) => own.has(slot) || own.has(from[slot]);
+  const springs = split.filter(([, a, b]) => isOwn(a) && isOwn(b));
   if (!springs.length) return body;
   return { ...body, springs: [...body.springs, ...springs],
     slots: [...new Set([...body.slots, ...springs.flatMap(([, a, b]) => [a, b])])] };

@@ -475,6 +475,7 @@ def _copy_particle(state: State, good: GoodValues, p: int, row: int) -> None:
     state.rolls[row], state.unmoved[row] = state.rolls[p], state.unmoved[p]
     state.owner[row], state.group[row], state.collides[row] = state.owner[p], state.group[p], state.collides[p]
     state.untouchable[row], state.particle_active[row] = state.untouchable[p], True
+    state.split_from[row] = state.split_from[p] if state.split_from[p] >= 0 else p
 
 
 @inner_kernel

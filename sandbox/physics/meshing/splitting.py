@@ -19,7 +19,8 @@ VERTICES, TRIANGLES, OPENINGS = range(3)
 SHORT = 0.7
 # What a triangle has of the square of its longest side, at least, where a collapse changed it: an even one has 0.43,
 # half a square 0.25. Higher leaves more short sides, lower leaves thinner triangles.
-LEAST_SHARE = 0.1
+# A thinner one may become thinner by this factor.
+LEAST_SHARE, THINNER = 0.1, 0.9
 # How far from straight a line may be where a point of it goes [spacings]: of the line, before both sides of it part;
 # and of a border, which keeps the area inside.
 STRAIGHT, AS_STRAIGHT = 0.01, 1e-9
@@ -310,7 +311,10 @@ def _may_move(mesh: SplitMesh, x: int, y: int, count: int) -> bool:
             mesh.mark[mesh.corner[mesh.fan[i], k]] = 0
     if common != shared or shared == count:
         return False
-    return after > 0.0 and after >= min(LEAST_SHARE, worst) and after_now >= min(LEAST_SHARE, worst_now)
+    if not after > 0.0 or after < min(LEAST_SHARE, THINNER * worst):
+        return False
+    # What is turned over now may stay so.
+    return after_now >= min(LEAST_SHARE, THINNER * worst_now if worst_now > 0.0 else worst_now)
 
 
 @inner_kernel

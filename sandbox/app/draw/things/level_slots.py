@@ -174,7 +174,7 @@ class Actor:
     def grown(self, state: Snapshot, split: Slots) -> "Actor":
         """The body with what cuts have added: springs (k,) are those of them that are there, of any body."""
         ends = np.stack([state.particle_a[split], state.particle_b[split]], axis=1).astype(np.int64)
-        is_own = np.isin(state.owner[ends[:, 0]], state.owner[self.slots])
+        is_own = np.isin(ends, np.r_[self.slots, np.flatnonzero(np.isin(state.split_from, self.slots))]).all(axis=1)
         if not is_own.any():
             return self
         ends, springs = ends[is_own], split[is_own]

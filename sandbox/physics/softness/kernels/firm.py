@@ -71,15 +71,15 @@ class FormModes(NamedTuple):
 class Pieces(NamedTuple):
     """The pieces of a body: which piece each point (n,), spring (m,) and constraint (k,) is of, -1: of none.
 
-    slot (n,): particle of each point. owner (n,): of each piece. total (1,): pieces. is_split (1,): whether a cut added
-    particles, springs and constraints to it, which are no rows of its form.
+    slot: particle of each point, and behind those the particles that cuts have added. owner: of each piece. total (1,):
+    pieces. is_split (1,): whether a cut has added anything to the body, which is no row of its form.
     """
 
     point: Annotated[Slots, "points"]
     spring: Annotated[Slots, "springs"]
     constraint: Annotated[Slots, "constraints"]
-    slot: Annotated[Slots, "points"]
-    owner: Annotated[Slots, "points"]
+    slot: Annotated[Slots, "members"]
+    owner: Annotated[Slots, "members"]
     total: Annotated[Slots, "1"]
     is_split: Annotated[Flags, "1"]
 
@@ -136,14 +136,25 @@ def _new_pieces(state: State, forms: Forms, body: int, arena: Arena) -> Pieces:
     # The pieces of a body as it is now.
     points, springs = _rows_of(forms, body, POINTS), _rows_of(forms, body, SPRINGS)
     constraints = _rows_of(forms, body, CONSTRAINTS)
-    made = new_tuple(Pieces, arena, points=points, springs=springs, constraints=constraints)
+    is_own = new_flags(arena, state.owner.shape[0])
+    first, members = forms.first[body, SPRINGS], points
+    if not is_full(arena):
+        for row in range(first, first + springs):
+            is_own[state.particle_a[forms.spring[row]]] = is_own[state.particle_b[forms.spring[row]]] = True
+        for p in range(state.owner.shape[0]):
+            members += int(_is_added_to(state, is_own, p))
+    made = new_tuple(Pieces, arena, points=points, springs=springs, constraints=constraints, members=members)
     scratch = mark(arena)
-    owners = new_tuple(Owners, arena, points=points)
+    owners = new_tuple(Owners, arena, points=members)
     if is_full(arena):
         return made
     made.total[0] = 1
-    first = forms.first[body, SPRINGS]
+    made.is_split[0] = members > points
     is_cut = False
+    for p in range(state.owner.shape[0]):
+        if _is_added_to(state, is_own, p):
+            members -= 1
+            made.slot[members] = p
     for row in range(first, first + springs):
         s = forms.spring[row]
         made.slot[forms.shapes.pairs[row, 0]] = state.particle_a[s]
@@ -152,10 +163,6 @@ def _new_pieces(state: State, forms: Forms, body: int, arena: Arena) -> Pieces:
     if is_cut:
         count = _list_owners(state, made.slot, owners)
         pieces = _number_pieces(state, forms, body, count, owners)
-        for s in range(state.law.shape[0]):
-            is_added = state.is_split[s] and state.spring_active[s]
-            if is_added and _place_of(state, state.particle_a[s], owners, count) >= 0:
-                made.is_split[0] = True
         if pieces > 1 or (pieces == 1 and made.is_split[0]):
             made.total[0] = pieces
             for at in range(count):
@@ -164,6 +171,12 @@ def _new_pieces(state: State, forms: Forms, body: int, arena: Arena) -> Pieces:
             _part(state, forms, body, count, owners, made)
     give_back(arena, scratch)
     return made
+
+
+@inner_kernel
+def _is_added_to(state: State, is_own: Flags, p: int) -> bool:
+    # Whether a cut has added a particle to a body.
+    return 0 <= state.split_from[p] < is_own.shape[0] and is_own[state.split_from[p]]
 
 
 @inner_kernel
