@@ -32,6 +32,7 @@ from sandbox.physics.meshing.splitting import (
     add_vertex,
     collapse_short,
     open_line,
+    set_back,
     smooth_line,
 )
 from sandbox.physics.state import GoodValues, State
@@ -46,6 +47,9 @@ ROWS_MISSING, TOO_MANY = 1, 2
 NEAR_BORDER = 0.06
 # Nearest to a particle that anything is cut, as a share of a spring.
 NEAREST = 1e-6
+# The edges of the pieces lie back from the line by the radius of what touches, so that they do no more than touch; at
+# most by this [spacings].
+MOST_BACK = 0.1
 # What a particle gives away of its mass at most, to new ones that lie on its springs.
 GIVEN = 0.5
 
@@ -108,6 +112,7 @@ def cut_along(state: State, good: GoodValues, springs: Slots, numbers: Floats, a
     smooth_line(mesh, spacing)
     open_line(mesh)
     collapse_short(mesh, spacing)
+    set_back(mesh, min(_radius_of(state, work), MOST_BACK * spacing))
     asked, missing = numbers[springs.shape[0] :], 0.0
     particles, links, areas = _count_rows(state, work, mesh)
     for k in range(ASKED):
@@ -217,6 +222,16 @@ def _spacing_of(state: State, work: LineScratch) -> float:
             total += abs(state.constraint_rest[k, 1])
             count += 1
     return math.sqrt(2.0 * total / max(count, 1))
+
+
+@inner_kernel
+def _radius_of(state: State, work: LineScratch) -> float:
+    # The radius [m] by which what is divided touches others, where it does.
+    radius = 0.0
+    for p in range(state.owner.shape[0]):
+        if work.is_near[p] and state.collides[p] != 0:
+            radius = max(radius, state.radius[p])
+    return radius
 
 
 @inner_kernel

@@ -41,6 +41,7 @@ class SplitMesh(NamedTuple):
     spring: Annotated[Slots, "vertices"]  # along the side that it lies on; -1: it has not moved
     at: Annotated[FloatRows, "vertices, 2"]  # [m] where it is now
     form: Annotated[FloatRows, "vertices, 2"]  # [m] where it is at rest
+    inward: Annotated[FloatRows, "vertices, 2"]  # from the line
     is_fixed: Annotated[Flags, "vertices"]
     corner: Annotated[SlotRows, "triangles, 3"]  # vertices, counter-clockwise at rest
     joined: Annotated[SlotRows, "triangles, 3"]  # the same, before points of the line became two
@@ -210,6 +211,41 @@ def smooth_line(mesh: SplitMesh, spacing: float) -> None:
             k = 0
         else:
             k += 1
+
+
+@inner_kernel
+def set_back(mesh: SplitMesh, way: float) -> None:
+    """Move the border along the line inwards by a way [m], in the form and as it is now."""
+    for now in range(2):
+        place = mesh.at if now == 1 else mesh.form
+        for v in range(mesh.count[VERTICES]):
+            mesh.inward[v, 0] = mesh.inward[v, 1] = 0.0
+        for t in range(mesh.count[TRIANGLES]):
+            for k in range(3 if mesh.is_there[t] else 0):
+                v, w = mesh.corner[t, k], mesh.corner[t, (k + 1) % 3]
+                # Two points of one side that was cut lie on the old border.
+                if mesh.spring[v] >= 0 and mesh.spring[w] >= 0 and _along(mesh, v, w) == 1:
+                    x, y = place[w, 0] - place[v, 0], place[w, 1] - place[v, 1]
+                    length = math.sqrt(x * x + y * y)
+                    for end in range(2 if length > 0.0 else 0):
+                        p = v if end == 0 else w
+                        mesh.inward[p, 0] -= y / length
+                        mesh.inward[p, 1] += x / length
+        for v in range(mesh.count[VERTICES]):
+            x, y = mesh.inward[v, 0], mesh.inward[v, 1]
+            length = math.sqrt(x * x + y * y)
+            if length > 0.0:
+                place[v, 0] += way * x / length
+                place[v, 1] += way * y / length
+
+
+@inner_kernel
+def _along(mesh: SplitMesh, v: int, w: int) -> int:
+    # How many triangles have a side from v to w, either way.
+    count = 0
+    for t in range(mesh.count[TRIANGLES]):
+        count += int(mesh.is_there[t] and _has(mesh, t, v) and _has(mesh, t, w))
+    return count
 
 
 @inner_kernel
