@@ -12,11 +12,11 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arena import NO_ARENA, Arena, is_full, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.pieces import TRIANGLE_CORNERS, is_whole_triangle, mark_torn
+from sandbox.physics.commands.kept_motion import motion_of, settle_motion
 from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.geometry.segment import polygon_area
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import (
-    BANK_UNOPENED,
     GRAB_MATERIAL,
     MOST_PARTICLES,
     MOST_SPRINGS,
@@ -76,16 +76,6 @@ class LineScratch(NamedTuple):
     is_written: Annotated[Flags, "constraints"]
     factor: Annotated[Floats, "constraints"]  # area wanted, as a multiple of the form's
     factor_now: Annotated[Floats, "constraints"]
-
-
-class Motion(NamedTuple):
-    """Momentum [kg m/s], and its moment [kg m^2/s] about a place [m]."""
-
-    x: float
-    y: float
-    moment: float
-    about_x: float
-    about_y: float
 
 
 @inner_kernel
@@ -347,14 +337,14 @@ def _write(
         work.mass[p] = state.mass[p]
         for axis in range(2):
             work.velocity[p, axis], work.origin[p, axis] = state.velocity[p, axis], state.origin[p, axis]
-    motion = _motion_of(state, work)
+    motion = motion_of(state, work.torn)
     _give_rows(state, work, mesh, new)
     _write_springs(state, good, work, mesh, state.law.shape[0] - links, new)
     _stretch_springs(state, good, work, mesh, state.law.shape[0] - links)
     _write_particles(state, good, work, mesh, new)
     _write_areas(state, good, work, mesh, areas)
     _stretch_constraints(state, good, work, mesh)
-    _settle_motion(state, good, work, motion)
+    settle_motion(state, good, work.torn, motion)
 
 
 @inner_kernel
@@ -577,63 +567,3 @@ def _stretch_constraints(state: State, good: GoodValues, work: LineScratch, mesh
             _measure(state, good, k, rest[k, 0] / before if is_area else 1.0)
             if is_area:
                 state.constraint_area_now[k] *= rest[k, 1] / before
-
-
-@inner_kernel
-def _motion_of(state: State, work: LineScratch) -> Motion:
-    # The motion of the bodies that are cut, about their middle.
-    middle_x, middle_y, total = 0.0, 0.0, 0.0
-    for p in range(state.owner.shape[0]):
-        if work.torn[p] >= 0:
-            total += state.mass[p]
-            middle_x += state.mass[p] * state.position[p, 0]
-            middle_y += state.mass[p] * state.position[p, 1]
-    return _about(state, work, middle_x / total, middle_y / total)
-
-
-@inner_kernel
-def _about(state: State, work: LineScratch, about_x: float, about_y: float) -> Motion:
-    px, py, moment = 0.0, 0.0, 0.0
-    for p in range(state.owner.shape[0]):
-        if work.torn[p] >= 0:
-            x, y = state.mass[p] * state.velocity[p, 0], state.mass[p] * state.velocity[p, 1]
-            px += x
-            py += y
-            moment += (state.position[p, 0] - about_x) * y - (state.position[p, 1] - about_y) * x
-    return Motion(px, py, moment, about_x, about_y)
-
-
-@inner_kernel
-def _settle_motion(state: State, good: GoodValues, work: LineScratch, before: Motion) -> None:
-    # Let what can move take up what the new masses and places have changed of the motion, as one stiff body.
-    now = _about(state, work, before.about_x, before.about_y)
-    total, middle_x, middle_y, inertia = 0.0, 0.0, 0.0, 0.0
-    for p in range(state.owner.shape[0]):
-        if work.torn[p] >= 0 and state.inverse_mass[p] > 0.0:
-            total += state.mass[p]
-            middle_x += state.mass[p] * (state.position[p, 0] - before.about_x)
-            middle_y += state.mass[p] * (state.position[p, 1] - before.about_y)
-    if total == 0.0:
-        return
-    middle_x, middle_y = middle_x / total, middle_y / total
-    x, y = (before.x - now.x) / total, (before.y - now.y) / total
-    for p in range(state.owner.shape[0]):
-        if work.torn[p] >= 0 and state.inverse_mass[p] > 0.0:
-            dx, dy = state.position[p, 0] - before.about_x - middle_x, state.position[p, 1] - before.about_y - middle_y
-            inertia += state.mass[p] * (dx * dx + dy * dy)
-    moment = before.moment - now.moment - total * (middle_x * y - middle_y * x)
-    turning = moment / inertia if inertia > 0.0 else 0.0
-    for p in range(state.owner.shape[0]):
-        if work.torn[p] >= 0:
-            for axis in range(2 if state.inverse_mass[p] > 0.0 else 0):
-                away = (
-                    before.about_y + middle_y - state.position[p, 1]
-                    if axis == 0
-                    else (state.position[p, 0] - before.about_x - middle_x)
-                )
-                change = (x if axis == 0 else y) + turning * away
-                state.velocity[p, axis] += change
-                state.slow_velocity[p, axis] += change
-            for axis in range(2):
-                good.velocity[p, axis] = state.velocity[p, axis]
-            state.energy_bank[p] = BANK_UNOPENED
