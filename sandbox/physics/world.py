@@ -1,6 +1,6 @@
 """World: particles, springs, constraints, settings and tick, with the only methods that change them."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -26,12 +26,13 @@ from sandbox.physics.jit import bundle
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES
 from sandbox.physics.keeping.equipment import Capacity, Equipment, FirmBody, Joined, Names, Surface
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
 from sandbox.physics.rules import Rules
 from sandbox.physics.sanitise import Containment
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.softness.kernels.firm import FormTable
-from sandbox.physics.state import ABSURD, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
+from sandbox.physics.state import ABSURD, COLUMNS, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS
 from sandbox.physics.ways import Ways
@@ -581,22 +582,6 @@ class World(StateArrays):
             arguments.slot(argument, count, "rows", arguments.FARTHEST)
         self.particle_naming.forget_beyond(particle_count)
         self.spring_naming.forget_beyond(spring_count)
-
-
-def grow(world: World, family: Family, count: int, arrays: Mapping[str, ArrayLike]) -> None:
-    """Append rows of a family to a world's arrays: values that were checked, or usual ones for others to fill in."""
-    room, mine = world._capacity.appended, world.__dict__
-    for column in FAMILIES[family]:
-        name = column.name
-        grown = room(name, mine[name], count)
-        grown[len(grown) - count :] = arrays.get(name, column.usual)
-        # One change of topology for all of them, however many there are.
-        mine[name] = grown
-        if column.guarded:
-            good = world.good[name] = room(f"good {name}", world.good[name], count)
-            good[len(good) - count :] = grown[len(grown) - count :]
-    world.topology_version += 1
-    world.may_fly = True
 
 
 def _lend(world: World) -> Any:

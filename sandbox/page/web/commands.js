@@ -229,6 +229,12 @@ export class Commands {
     return result < 0 && -result % reasons === noRows;
   }
 
+  /** How many rows it needs, of what its numbers end with.
+   * @type {(numbers: Float64Array) => Float64Array} */
+  rowsIn(numbers) {
+    return numbers.slice(-this.#about.answers.rows);
+  }
+
   /** Whether a kernel has done it: throws in words where it has not. answers: its numbers afterwards.
    * @type {(record: Command, packed: Packed, result: number, answers: Float64Array) => void} */
   answer(record, { slots, numbers }, result, answers) {

@@ -1,15 +1,15 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what is empty moves the view. While
 // time stands what is dragged goes elsewhere.
 import { Cursor, CURSOR_POINTER, thingOf } from './cursor.js';
-import { wholeTriangles } from './pieces.js';
 import { HANDS } from './shared.js';
+import { Stroke } from './stroke.js';
 /** @import { Camera } from './draw.js' */
 /** @import { Maker } from './maker.js' */
 /** @import { Run } from './run.js' */
 /** @import { Command, HandEvents, Point, Pressed, Theme } from './types.js' */
 /** @import { World } from './world.js' */
 
-const { STRENGTH, AT_LIMIT, SOFT_REACH, PICK_RADIUS, SOLID, SHARES } = HANDS;
+const { STRENGTH, AT_LIMIT, SOFT_REACH, PICK_RADIUS } = HANDS;
 // Units of force, and how many newtons each is.
 const FORCES = /** @type {[size: number, name: string][]} */ (HANDS.UNITS);
 /** @type {Record<string, number>} */
@@ -24,12 +24,10 @@ const LONG = 500, RESTS = 10;
  * @typedef {Pixel & { time: number }} Touch */
 /**
  * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m]; within: how far it reaches
- * [m]; cut: how many springs it has cut; pressed: the spring of triangles that it came down on; crossed: what it has cut
- * or is to; entered: by owner, of bodies of triangles that it is in, springs and the shares of them that it crosses; asks:
- * of which particle it asks for a menu; timer: until it does.
+ * [m]; cut: how many springs it has cut, by a stroke; asks: of which particle it asks for a menu; timer: until it does.
  * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'carry' | 'make' | 'done', began: Touch, isBeside: boolean,
  *   hand: number | null, carried: number, point: Point, within: number, gesture: number, cut: number,
- *   pressed: number[], crossed: Set<number>, entered: Map<number, Map<number, number>>, asks: number | null, timer: number }} Pointer
+ *   stroke: Stroke | null, asks: number | null, timer: number }} Pointer
  */
 /**
  * What a hand holds, where it draws it [m], how far that is from the pointer, how far that reaches [m], and its largest
@@ -149,37 +147,6 @@ class Near {
       if (straddles && meets(0, ax, bx) && meets(1, ay, by)) found.push(s);
     });
     return found;
-  }
-
-  /** Where a line crosses springs, as a share of each from its first end; what only touches it is left out.
-   * @type {(springs: number[], p: Point, q: Point) => [spring: number, share: number][]} */
-  shares(springs, p, q) {
-    const a = this.world.view('state.particle_a'), b = this.world.view('state.particle_b');
-    const area = (/** @type {number} */ x, /** @type {number} */ y) => (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
-    return springs.flatMap((s) => {
-      const [ax, ay, bx, by] = this.#ends(a[s], b[s]), one = area(ax, ay), other = area(bx, by);
-      return (one >= 0) === (other >= 0) ? [] : [/** @type {[number, number]} */ ([s,
-        Math.round((one / (one - other)) * SHARES) / SHARES])];
-    });
-  }
-
-  /** Which springs act within a body that keeps areas of triangles, which a cut parts along its line.
-   * @type {() => boolean[]} */
-  inTriangles() {
-    const owners = new Set(wholeTriangles(this.world).map(([slot]) => this.owner[slot]));
-    const b = this.world.view('state.particle_b');
-    return Array.from(this.world.view('state.particle_a'), (p, s) => this.owner[p] === this.owner[b[s]] && owners.has(this.owner[p]));
-  }
-
-  /** @type {(spring: number) => number} */
-  ownerOf(spring) {
-    return this.owner[this.world.view('state.particle_a')[spring]];
-  }
-
-  /** Whether a spring is a side of the outline of what is solid.
-   * @type {(spring: number) => boolean} */
-  isBorder(spring) {
-    return this.world.view('state.edge')[spring] >= SOLID;
   }
 
   /** How far a hand reaches into a soft body [m]; 0 where it is not soft.
@@ -303,7 +270,7 @@ export class Hands {
       within = REACH[event.pointerType] / this.camera.zoom;
     /** @type {Pointer} */
     const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, carried: -1, point, within,
-      gesture: 0, cut: 0, pressed: [], crossed: new Set(), entered: new Map(), asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
+      gesture: 0, cut: 0, stroke: null, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
     const near = new Near(this.run.world), { particle: marked = null } = event;
     const touched = marked ?? near.particle(point, within);
@@ -313,13 +280,7 @@ export class Hands {
     pointer.isBeside = this.tool !== 'cut' && touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
       Object.assign(pointer, { kind: 'cut', gesture: this.run.newGesture() });
-      const pressed = near.spring(point, within / 2), inTriangles = near.inTriangles();
-      // Perhaps a stroke begins there, which parts the body.
-      if (pressed.some((spring) => inTriangles[spring])) pointer.pressed = pressed;
-      else {
-        pressed.forEach((spring) => pointer.crossed.add(spring));
-        this.#cut(pointer, pressed);
-      }
+      pointer.stroke = new Stroke(near, point, within, (springs, at) => this.#cut(pointer, springs, at));
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
     else if (this.tool === 'erase') this.#erase(touched ?? free, pointer);
     else if (this.maker.makes(this.tool)) {
@@ -408,51 +369,10 @@ export class Hands {
     if (this.run.submit({ type: 'remove', particle }, this.run.newGesture(), this.say)) this.speak(`${thing} is gone.`);
   }
 
-  /** @type {(pointer: Pointer, springs: number[], at?: number[]) => void} */
-  #cut(pointer, springs, at = []) {
+  /** @type {(pointer: Pointer, springs: number[], at: number[]) => void} */
+  #cut(pointer, springs, at) {
     if (!springs.length) return;
     if (this.run.submit({ type: 'cut_springs', springs, at }, pointer.gesture, this.say)) pointer.cut += springs.length;
-  }
-
-  /** Go on with a stroke: cut what it crosses, and bodies of triangles once it has left them, as CutTool does.
-   * @type {(pointer: Pointer, point: Point) => void} */
-  #stroke(pointer, point) {
-    const near = new Near(this.run.world), crossed = near.crossing(pointer.point, point).filter((s) => !pointer.crossed.has(s));
-    const inTriangles = near.inTriangles(), noted = crossed.filter((s) => inTriangles[s]);
-    for (const [spring, share] of near.shares(noted, pointer.point, point)) {
-      const owner = near.ownerOf(spring);
-      if (!pointer.entered.has(owner)) pointer.entered.set(owner, new Map());
-      pointer.entered.get(owner)?.set(spring, share);
-      pointer.crossed.add(spring);
-    }
-    const others = crossed.filter((s) => !inTriangles[s]);
-    others.forEach((s) => pointer.crossed.add(s));
-    pointer.point = point;
-    const left = [...pointer.entered].flatMap(([owner, all]) => {
-      const borders = [...all.keys()].filter((s) => near.isBorder(s)).length;
-      return borders > 0 && borders % 2 === 0 ? [owner] : [];
-    });
-    this.#cut(pointer, others);
-    this.#part(pointer, left);
-  }
-
-  /** Part bodies along what the stroke crosses of them.
-   * @type {(pointer: Pointer, owners: number[]) => void} */
-  #part(pointer, owners) {
-    for (const owner of owners) {
-      const noted = [...pointer.entered.get(owner) ?? []].filter(([spring]) => this.run.world.isInUse('spring', spring));
-      pointer.entered.delete(owner);
-      // One spring alone is no line.
-      this.#cut(pointer, noted.map(([spring]) => spring), noted.length > 1 ? noted.map(([, share]) => share) : []);
-    }
-  }
-
-  /** End a stroke: what it is still inside of is cut as far as it came, and where it crossed nothing, what was pressed.
-   * @type {(pointer: Pointer) => void} */
-  #endStroke(pointer) {
-    const { pressed, crossed, entered } = pointer;
-    if (!crossed.size && pressed.length && this.run.world.isInUse('spring', pressed[0])) this.#cut(pointer, pressed);
-    else this.#part(pointer, [...entered.keys()]);
   }
 
   /** The thing that a particle is of, as it is spoken of.
@@ -494,9 +414,8 @@ export class Hands {
     const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y),
       held = this.#heldBy(pointer);
     if (held) this.#aim(held, point);
-    else if (pointer.kind === 'cut') {
-      this.#stroke(pointer, point);
-    } else if (pointer.kind === 'carry') this.#carry(pointer, point);
+    else if (pointer.kind === 'cut') pointer.stroke?.go(new Near(this.run.world), point);
+    else if (pointer.kind === 'carry') this.#carry(pointer, point);
     else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
     else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
@@ -536,7 +455,7 @@ export class Hands {
     if (event.type === 'pointerup' && pointer.asks !== null) {
       this.menu({ particle: pointer.asks, x: pointer.x, y: pointer.y });
     }
-    if (pointer.kind === 'cut') this.#endStroke(pointer);
+    pointer.stroke?.end(this.run.world);
     if (pointer.cut) this.speak(`Cut: ${pointer.cut} ${pointer.cut === 1 ? 'spring' : 'springs'}.`);
     const held = this.#heldBy(pointer);
     if (pointer.hand !== null && held) {

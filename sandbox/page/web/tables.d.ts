@@ -25,6 +25,7 @@ export interface StateArrays {
   unmoved: Uint8Array;
   untouchable: Uint8Array;
   unreturnable: Float64Array;
+  split_from: Int32Array;
   particle_a: Int32Array;
   particle_b: Int32Array;
   rest_length: Float64Array;

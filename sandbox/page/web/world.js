@@ -1,30 +1,23 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
+import { aligned, KINDS, put } from './arrays.js';
 import { Commands, Refusal } from './commands.js';
 import { formCounts, formNames, formRows } from './forms.js';
 import { Hashes, isEqual } from './hash.js';
-import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, namesOf, packed, seen, unused } from './kit.js';
+import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, looseNames, namesOf, packed, seen } from './kit.js';
 import { act } from './rules.js';
 /**
  * @import { About, AnyArray, Column, Command, Counts, Done, Joined, Kernels, Kit, Level, NameKind, SavedState,
  *   Settings, StateHash, View } from './types.js'
  */
 
-const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
-/** @type {Record<string, new (buffer: ArrayBuffer, offset: number, length: number) => AnyArray>} */
-const KINDS = {
-  f8: Float64Array, f4: Float32Array, i8: BigInt64Array, u4: Uint32Array, i4: Int32Array, i1: Int8Array, b1: Uint8Array,
-};
+const PAGE = 65536, WORD = 8, ADDRESS = 4, SHAPE = 5;
 // What is derived, in this order, each by a kernel of its own with an arena of its own; and words that one begins with.
 const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.kept.feature',
   'collisions.kept.impulse', 'collisions.kept.impact']);
-// Families of which a cut may need more rows.
-const ROWS_OF_CUT = 4;
 // Room for the words of arguments of a call.
 const ARGUMENTS = 64, NONE = new Float64Array();
-/** @type {(size: number) => number} */
-const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
 /** @typedef {[address: number, count: number, size: number]} Span */
 
@@ -314,8 +307,8 @@ export class World {
     const answered = () => new Float64Array(this.#kernels.memory.buffer, given[1][0], numbers.length);
     let result = call();
     if (this.commands.wantsRows(result)) {
-      // The numbers say then how many there are.
-      this.#addRows(Array.from(answered().slice(-ROWS_OF_CUT)));
+      const [particle, spring, constraint, corner] = this.commands.rowsIn(answered());
+      this.#addRows({ particle, spring, constraint, corner }, looseNames(this.names, particle, spring));
       result = call();
     }
     const answers = answered();
@@ -343,27 +336,22 @@ export class World {
     }
   }
 
-  /** Add rows that have no names but of their own, as a cut wants them.
-   * @type {(more: number[]) => void} */
-  #addRows([particles, springs, constraints, corners]) {
-    const { particle, spring, constraint, corner, breakable } = this.counts, { names } = this;
-    const then = { ...this.counts, particle: particle + particles, spring: spring + springs,
-      constraint: constraint + constraints, corner: corner + corners, breakable: breakable ? spring + springs : 0 };
-    this.#grow(then);
+  /** Add rows of families, with these names.
+   * @type {(more: Partial<Counts>, names: Partial<Record<NameKind, string[]>>) => void} */
+  #addRows(more, names) {
+    const added = Object.entries(more).map(([family, count]) => [family, this.counts[/** @type {keyof Counts} */ (family)] + count]);
+    /** @type {Counts} */
+    const then = { ...this.counts, ...Object.fromEntries(added) };
+    this.#grow(Object.assign(then, { breakable: then.breakable ? then.spring : 0 }));
     this.counts = then;
-    const dot = unused(names.particle, /^\+\.(\d+)$/), colon = unused(names.spring, /^\+:(\d+)$/);
-    this.#name({ particle: Array.from({ length: particles }, (_, k) => `+.${dot + k}`),
-      spring: Array.from({ length: springs }, (_, k) => `+:${colon + k}`) });
+    this.#name(names);
   }
 
   // Give hands their slots, in a level that began with nothing, once there is something to hold.
   #reserveHands() {
-    const { count } = this.hands, { particle, spring, breakable } = this.counts, names = Array.from({ length: count },
+    const { count } = this.hands, { particle, spring } = this.counts, names = Array.from({ length: count },
       (_, hand) => `+hand.${hand}`);
-    const then = { ...this.counts, particle: particle + count, spring: spring + count, hand: count };
-    this.#grow(Object.assign(then, { breakable: breakable ? then.spring : 0 }));
-    this.counts = then;
-    this.#name({ particle: names, spring: names });
+    this.#addRows({ particle: count, spring: count, hand: count }, { particle: names, spring: names });
     this.#call('reserve', this.#block, particle, spring);
     this.#hold({ particle, spring, count });
     this.#derive(DERIVATIONS);
@@ -608,11 +596,4 @@ export class World {
       iterations, warm_start: warm, wind: [windX, windY], drag,
     };
   }
-}
-
-/** Write numbers into an array that holds such, from a place on.
- * @type {(array: AnyArray, values: AnyArray, at?: number) => void} */
-function put(array, values, at = 0) {
-  // Both are of 64 bits and whole, or neither is.
-  /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
 }

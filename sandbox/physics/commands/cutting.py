@@ -313,7 +313,7 @@ def _needs_spring(state: State, work: LineScratch, mesh: SplitMesh, t: int, k: i
 def _count_rows(state: State, work: LineScratch, mesh: SplitMesh) -> tuple[int, int, int]:
     # How many rows of particles, springs and areas are new.
     particles, links, areas = 0, 0, 0
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         if not (mesh.is_there[t] and mesh.is_part[t]):
             continue
         areas += int(work.is_written[mesh.source[t]])
@@ -351,7 +351,7 @@ def _write(
 def _give_rows(state: State, work: LineScratch, mesh: SplitMesh, new: int) -> None:
     # Give new vertices their particles, and find those that moved.
     row = new
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         for k in range(3 if mesh.is_there[t] else 0):
             v = mesh.corner[t, k]
             if mesh.row[v] < 0:
@@ -374,7 +374,7 @@ def _form_length(a: int, b: int, form: FloatRows) -> float:
 def _write_springs(state: State, good: GoodValues, work: LineScratch, mesh: SplitMesh, row: int, new: int) -> None:
     # Springs along the sides of parts where none is, each like one that is cut there.
     first = row
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         for k in range(3 if mesh.is_there[t] and mesh.is_part[t] else 0):
             if not _needs_spring(state, work, mesh, t, k, new):
                 continue
@@ -447,7 +447,7 @@ def _stretch_springs(state: State, good: GoodValues, work: LineScratch, mesh: Sp
 
 @inner_kernel
 def _write_particles(state: State, good: GoodValues, work: LineScratch, mesh: SplitMesh, new: int) -> None:
-    for v in range(mesh.count[VERTICES]):
+    for v in range(mesh.counts[VERTICES]):
         p, a, b, share = mesh.row[v], mesh.one[v], mesh.other[v], mesh.share[v]
         if p >= new:
             _copy_particle(state, good, a if share < 0.5 else b, p)
@@ -492,7 +492,7 @@ def _write_areas(state: State, good: GoodValues, work: LineScratch, mesh: SplitM
         if work.spring[k] > 0:
             work.factor[k], work.factor_now[k] = rest[k, 0] / rest[k, 1], now[k] / rest[k, 1]
             state.constraint_active[k] = False
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         if not (mesh.is_there[t] and mesh.is_part[t]):
             continue
         source = mesh.source[t]

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 
-# Entries of `count`.
+# Entries of `counts`.
 VERTICES, TRIANGLES, OPENINGS = range(3)
 # Sides collapse that are shorter than this share of the spacing. Longer ones leave as few new vertices, and bend the
 # mesh about the line more.
@@ -49,7 +49,7 @@ class SplitMesh(NamedTuple):
     is_part: Annotated[Flags, "triangles"]
     is_there: Annotated[Flags, "triangles"]
     opening: Annotated[SlotRows, "triangles, 2"]  # pieces of the line, between two vertices
-    count: Annotated[Slots, "3"]
+    counts: Annotated[Slots, "3"]
     mark: Annotated[Slots, "vertices"]
     fan: Annotated[Slots, "triangles"]
     label: Annotated[Slots, "triangles"]
@@ -60,8 +60,8 @@ def add_vertex(
     mesh: SplitMesh, row: int, one: int, other: int, share: float, spring: int, is_fixed: bool
 ) -> int:  # fmt: skip
     """Add a vertex, whose places are to be filled in; its number."""
-    v = mesh.count[VERTICES]
-    mesh.count[VERTICES] = v + 1
+    v = mesh.counts[VERTICES]
+    mesh.counts[VERTICES] = v + 1
     mesh.row[v], mesh.one[v], mesh.other[v], mesh.share[v] = row, one, other, share
     mesh.spring[v], mesh.is_fixed[v] = spring, is_fixed
     return v
@@ -69,8 +69,8 @@ def add_vertex(
 
 @inner_kernel
 def _add(mesh: SplitMesh, a: int, b: int, c: int, source: int, is_part: bool) -> None:
-    t = mesh.count[TRIANGLES]
-    mesh.count[TRIANGLES] = t + 1
+    t = mesh.counts[TRIANGLES]
+    mesh.counts[TRIANGLES] = t + 1
     mesh.corner[t, 0], mesh.corner[t, 1], mesh.corner[t, 2] = a, b, c
     mesh.joined[t, 0], mesh.joined[t, 1], mesh.joined[t, 2] = a, b, c
     mesh.source[t], mesh.is_part[t], mesh.is_there[t] = source, is_part, True
@@ -106,8 +106,8 @@ def add_triangle(mesh: SplitMesh, a: int, b: int, c: int, p: int, q: int, r: int
     else:
         _add(mesh, p, b, r, source, True)
         _add(mesh, b, c, r, source, True)
-    k = mesh.count[OPENINGS]
-    mesh.count[OPENINGS] = k + 1
+    k = mesh.counts[OPENINGS]
+    mesh.counts[OPENINGS] = k + 1
     mesh.opening[k, 0], mesh.opening[k, 1] = p, r
 
 
@@ -120,7 +120,7 @@ def _squared(v: int, w: int, place: FloatRows) -> float:
 @inner_kernel
 def open_line(mesh: SplitMesh) -> None:
     """Part the triangles on both sides of the line: of its vertices each side gets its own."""
-    for v in range(mesh.count[VERTICES]):
+    for v in range(mesh.counts[VERTICES]):
         if mesh.row[v] < 0:
             _part_fans(mesh, v, _list_fans(mesh, v))
 
@@ -129,7 +129,7 @@ def open_line(mesh: SplitMesh) -> None:
 def _list_fans(mesh: SplitMesh, v: int) -> int:
     # List the triangles at a vertex, those that hang together by sides under one label; how many.
     count = 0
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         if mesh.is_there[t] and v in (mesh.joined[t, 0], mesh.joined[t, 1], mesh.joined[t, 2]):
             mesh.fan[count], mesh.label[count] = t, count
             count += 1
@@ -150,7 +150,7 @@ def _hang_together(mesh: SplitMesh, v: int, one: int, other: int) -> bool:
         w = mesh.joined[one, k]
         if w != v and w in (mesh.joined[other, 0], mesh.joined[other, 1], mesh.joined[other, 2]):
             is_open = False
-            for o in range(mesh.count[OPENINGS]):
+            for o in range(mesh.counts[OPENINGS]):
                 first, last = mesh.opening[o, 0], mesh.opening[o, 1]
                 is_open = is_open or (first == v and last == w) or (first == w and last == v)
             if not is_open:
@@ -178,7 +178,7 @@ def collapse_short(mesh: SplitMesh, spacing: float) -> None:
     """Collapse short sides of what is divided, the shortest first, while there is one that may."""
     while True:
         shortest, x, y = SHORT * SHORT * spacing * spacing, -1, -1
-        for t in range(mesh.count[TRIANGLES]):
+        for t in range(mesh.counts[TRIANGLES]):
             for k in range(6 if mesh.is_there[t] and mesh.is_part[t] else 0):
                 v, w = mesh.corner[t, k % 3], mesh.corner[t, (k % 3 + 1 + k // 3) % 3]
                 squared = _squared(v, w, mesh.form)
@@ -195,15 +195,15 @@ def collapse_short(mesh: SplitMesh, spacing: float) -> None:
 def smooth_line(mesh: SplitMesh, spacing: float) -> None:
     """Leave out points of the line that are near others and as good as straight between two, before it is open."""
     k = 0
-    while k < 2 * mesh.count[OPENINGS]:
+    while k < 2 * mesh.counts[OPENINGS]:
         x, y = mesh.opening[k // 2, k % 2], mesh.opening[k // 2, 1 - k % 2]
         z = _beyond(mesh, x, y)
         is_near = _squared(x, y, mesh.form) < SHORT * SHORT * spacing * spacing
         if z >= 0 and is_near and _lies_between(x, y, z, STRAIGHT * spacing, mesh.at) and _may_move(mesh, x, y, 0):
-            last = mesh.count[OPENINGS] - 1
+            last = mesh.counts[OPENINGS] - 1
             for axis in range(2):
                 mesh.opening[k // 2, axis] = mesh.opening[last, axis]
-            mesh.count[OPENINGS] = last
+            mesh.counts[OPENINGS] = last
             for o in range(last):
                 for axis in range(2):
                     mesh.opening[o, axis] = y if mesh.opening[o, axis] == x else mesh.opening[o, axis]
@@ -218,9 +218,9 @@ def set_back(mesh: SplitMesh, way: float) -> None:
     """Move the border along the line inwards by a way [m], in the form and as it is now."""
     for now in range(2):
         place = mesh.at if now == 1 else mesh.form
-        for v in range(mesh.count[VERTICES]):
+        for v in range(mesh.counts[VERTICES]):
             mesh.inward[v, 0] = mesh.inward[v, 1] = 0.0
-        for t in range(mesh.count[TRIANGLES]):
+        for t in range(mesh.counts[TRIANGLES]):
             for k in range(3 if mesh.is_there[t] else 0):
                 v, w = mesh.corner[t, k], mesh.corner[t, (k + 1) % 3]
                 # Two points of one side that was cut lie on the old border.
@@ -231,7 +231,7 @@ def set_back(mesh: SplitMesh, way: float) -> None:
                         p = v if end == 0 else w
                         mesh.inward[p, 0] -= y / length
                         mesh.inward[p, 1] += x / length
-        for v in range(mesh.count[VERTICES]):
+        for v in range(mesh.counts[VERTICES]):
             x, y = mesh.inward[v, 0], mesh.inward[v, 1]
             length = math.sqrt(x * x + y * y)
             if length > 0.0:
@@ -243,7 +243,7 @@ def set_back(mesh: SplitMesh, way: float) -> None:
 def _along(mesh: SplitMesh, v: int, w: int) -> int:
     # How many triangles have a side from v to w, either way.
     count = 0
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         count += int(mesh.is_there[t] and _has(mesh, t, v) and _has(mesh, t, w))
     return count
 
@@ -252,7 +252,7 @@ def _along(mesh: SplitMesh, v: int, w: int) -> int:
 def _beyond(mesh: SplitMesh, x: int, y: int) -> int:
     # Where the line goes on that comes from y to x, inside of the mesh; -1: nowhere, or there are several.
     count, beyond = 0, -1
-    for o in range(mesh.count[OPENINGS]):
+    for o in range(mesh.counts[OPENINGS]):
         for axis in range(2):
             if mesh.opening[o, axis] == x:
                 count += 1
@@ -262,7 +262,7 @@ def _beyond(mesh: SplitMesh, x: int, y: int) -> int:
 
 @inner_kernel
 def _collapse(mesh: SplitMesh, x: int, y: int) -> None:
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         if mesh.is_there[t] and _has(mesh, t, x):
             mesh.is_there[t] = not _has(mesh, t, y)
             for k in range(3):
@@ -280,7 +280,7 @@ def _has(mesh: SplitMesh, t: int, v: int) -> bool:
 @inner_kernel
 def _list_star(mesh: SplitMesh, v: int, w: int, first: int) -> int:
     # List the triangles at a vertex but not at w, from a place of `fan` on; the place behind them.
-    for t in range(mesh.count[TRIANGLES]):
+    for t in range(mesh.counts[TRIANGLES]):
         if mesh.is_there[t] and _has(mesh, t, v) and (w < 0 or not _has(mesh, t, w)):
             mesh.fan[first] = t
             first += 1
