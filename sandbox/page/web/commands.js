@@ -232,7 +232,7 @@ export class Commands {
   /** How many rows it needs, of what its numbers end with.
    * @type {(numbers: Float64Array) => Float64Array} */
   rowsIn(numbers) {
-    return numbers.slice(-this.#about.answers.rows);
+    return numbers.slice(-Number(this.#about.answers.rows));
   }
 
   /** Whether a kernel has done it: throws in words where it has not. answers: its numbers afterwards.
