@@ -73,15 +73,18 @@ def crossed(session: Session, actor: Actor, stroke: str) -> tuple[int, ...]:
     return tuple(np.intersect1d(found, actor.springs).tolist())
 
 
-def part(session: Session, body: str, stroke: str) -> Actor:
-    """Part a body along a stroke, with the next tick; its slots."""
+def cut_along(session: Session, body: str, stroke: str) -> CutSprings:
+    """The command that parts a body along a stroke, where the body lies now."""
     actor = actor_of(session.level, body)
-    line = line_of(session, actor, stroke)
     springs = np.array(crossed(session, actor, stroke), np.int64)
-    shares = shares_crossed(session.world, springs, *line)
+    shares = shares_crossed(session.world, springs, *line_of(session, actor, stroke))
     is_parted = shares >= 0.0
-    session.submit(CutSprings(tuple(springs[is_parted].tolist()), tuple(shares[is_parted].tolist())))
-    return actor
+    return CutSprings(tuple(springs[is_parted].tolist()), tuple(shares[is_parted].tolist()))
+
+
+def part(session: Session, body: str, stroke: str) -> None:
+    """Part a body along a stroke, with the next tick."""
+    session.submit(cut_along(session, body, stroke))
 
 
 def cut(session: Session, body: str, stroke: str) -> Actor:
