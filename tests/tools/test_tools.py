@@ -206,7 +206,8 @@ def test_tools_leave_the_snapshot_and_the_session_alone(session):
 
 
 JELLY = {
-    "type": "jelly", "id": "it", "shape": {"box": [1.6, 1.6]}, "position": [0.0, 0.0], "spacing": 0.4, "material": "soft",
+    "type": "jelly", "id": "it", "shape": {"box": [1.6, 1.6]}, "position": [0.0, 0.0], "spacing": 0.4,
+    "material": "soft",
 }  # fmt: skip
 
 
