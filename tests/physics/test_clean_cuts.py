@@ -37,17 +37,18 @@ BODIES = {
 }
 
 
-def world_of(kind, touches=False):
-    """A world of one body that turns, goes and trembles."""
+def world_of(kind, radius=0.0):
+    """A world of one body that turns, goes and trembles; radius [m] of its particles."""
     chance = np.random.default_rng(7)
     body = {"type": "jelly", "id": "it", "position": [0.0, 0.0], "spacing": SPACING, "material": "soft", **BODIES[kind]}
     level = {
-        "format": "spring-sandbox/level", "version": 3, "name": kind, **({"contacts": {}} if touches else {}),
+        "format": "spring-sandbox/level", "version": 3, "name": kind, "contacts": {},
         "settings": {"solver": "direct", "gravity": [0.0, 0.0]}, "bodies": [body],
         "materials": {"soft": {"stiffness": 0.2, "damping": 0.4}},
     }  # fmt: skip
     world = build_world(parse_level(json.dumps(level).encode(), kind))
     own = world.particle_active
+    world.change("radius", radius, own)
     if kind == "deformed":
         bent = world.position[own] @ np.array([[1.1, 0.2], [-0.1, 0.8]])
         world.change("position", bent + 0.06 * np.sin(2.0 * bent[:, ::-1]), own)
@@ -223,13 +224,13 @@ def test_undo_joins_the_pieces_and_redo_and_a_recording_part_them_to_the_same_bi
 
 
 def test_the_edges_of_pieces_that_touch_lie_back_by_their_radii():
-    world = world_of("box", touches=True)
+    world = world_of("box", radius=0.03)
     start, end = (-3.0, -1.0), (3.0, 1.3)
     cut_along(world, start, end)
     across = np.array([start[1] - end[1], end[0] - start[0]]) / math.dist(start, end)
     triangles, owners = triangles_of(world)
     side = (triangles - np.array(start)) @ across
-    back = min(float(world.radius[0]), SPACING / 10.0)
+    back = float(world.radius[0])
     for owner in np.unique(owners):
         assert np.abs(side[owners == owner]).min() == pytest.approx(back, abs=SPACING / 20.0)
     assert not [pair for pair in overlaps(world).depth if pair[0] != pair[1]]

@@ -214,7 +214,7 @@ JELLY = {
 @pytest.fixture
 def jelly():
     level = {
-        "format": "spring-sandbox/level", "version": 3, "name": "one jelly", "bodies": [JELLY],
+        "format": "spring-sandbox/level", "version": 3, "name": "one jelly", "contacts": {}, "bodies": [JELLY],
         "materials": {"soft": {"stiffness": 0.2, "damping": 0.4}}, "settings": {"gravity": [0.0, 0.0]},
     }  # fmt: skip
     return Session(parse_level(json.dumps(level).encode(), "one jelly"))
