@@ -241,6 +241,10 @@ export class Commands {
     if (result >= 0) return;
     const { refusals: { reasons, bad }, messages, kinds } = this.#about, { type } = record;
     const reason = -result % reasons, place = Math.floor(-result / reasons), names = this.#names;
+    const { at } = /** @type {{ at?: number[] }} */ (record);
+    if (place === slots.length && at?.length && at.length !== slots.length) {
+      throw new Refusal(fill(messages.unequal, at.length, slots.length));
+    }
     if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
     const fields = kinds[type].slots, field = fields[Math.min(place, fields.length - 1)], slot = slots[place];
     const { names: kind, noun } = new Map(this.#named(type)).get(field) ?? {}, name = kind && names[kind][slot];

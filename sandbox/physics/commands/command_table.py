@@ -85,6 +85,7 @@ _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "subst
 ANSWERS = {"contacts": 1, "nearest": 2, "rows": ASKED}
 # What a world says itself of every command, if nobody else does.
 _OF_WORLD = {"first_cursor", "first_spring", "tick_rate", "materials", "duration"}
+UNEQUAL = "at of {} springs: {} are cut"
 # What somebody may leave out.
 _MAY_LACK = {"at"}
 # Slots that are true or false.
@@ -225,7 +226,7 @@ def _checked(kind: KernelCommand, name: str, values: Mapping[str, Any]) -> tuple
     if name == "at":
         shares = tuple(number("at", each, 0.0, 1.0) for each in listed("at", values.get("at", ())))
         if len(shares) not in (0, len(values["springs"])):
-            raise ValueError(f"at of {len(shares)} springs: {len(values['springs'])} are cut")
+            raise ValueError(UNEQUAL.format(len(shares), len(values["springs"])))
         return shares
     value = values[name]
     if value is None and f"?{name}" in kind.slots:
