@@ -119,6 +119,7 @@ REST = {
     "sandbox.export.flat._outlines_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.level.kinds.expansion.outline_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.physics.collision.pieces._find_soft: state.edge[s]": {"LINE", "NO_EDGE"},
+    "sandbox.physics.commands.cutting._is_border: state.edge[s]": {"LINE", "NO_EDGE"},
     # Those that run from their first end to their second.
     "sandbox.app.draw.things.belt_marks.body_belts: state.edge[running]": {"SOLID_LEFT", "NO_EDGE"},
     # How far the lowest point is down.

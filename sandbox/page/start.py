@@ -160,7 +160,12 @@ def about(world: LevelWorld, words: int) -> dict[str, Any]:
         "choices": command_table.CHOICES,
         "answers": command_table.ANSWERS,
         "givers": {name: getattr(command, name) for name in ("HAND", "RULE", "PROGRAM")},
-        "refusals": {"reasons": command.REASONS, "words": command_table.WORDS, "bad": command.BAD},
+        "refusals": {
+            "reasons": command.REASONS,
+            "words": command_table.WORDS,
+            "bad": command.BAD,
+            "noRows": command.NO_ROWS,
+        },
         "filled": {
             "doing": command.FORBIDDEN,
             "counted": command.EXHAUSTED,

@@ -23,6 +23,8 @@ LONGEST_RAMP = 1_000_000
 # spring's length needs.
 FARTHEST_PLACE = 1e6
 LEAST_MASS, MOST_MASS = 1e-9, 1e9
+# What a world holds at most, which levels and cuts keep to: memory and time of a tick grow with them.
+MOST_PARTICLES, MOST_SPRINGS = 100_000, 400_000
 
 
 # The group of terrain, and the bits of every group.

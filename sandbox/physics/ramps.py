@@ -220,14 +220,27 @@ def in_force(state: StateArrays, family: str) -> tuple[Floats, Floats, Floats]:
 
 
 @inner_kernel
+def _is_of_body(state: State, areas: SlotRows, body: int, k: int) -> bool:
+    # Whether a constraint is of a body, or was added to a piece of it by a cut.
+    for b in range(areas.shape[0]):
+        if areas[b, 0] <= k < areas[b, 1]:
+            return b == body
+    owner, is_piece = state.owner[state.corner_particle[state.constraint_first[k]]], False
+    for other in range(areas[body, 0], areas[body, 1]):
+        own = state.owner[state.corner_particle[state.constraint_first[other]]]
+        is_piece = is_piece or (state.constraint_active[other] and own == owner)
+    return is_piece
+
+
+@inner_kernel
 def inflate(state: State, good: GoodValues, areas: SlotRows, body: int, inflation: float, duration: int) -> None:
     """Let each area of a body, by its row in areas, want this multiple of its form's, in so many ticks; 0: at once.
 
     areas (k, 2): first constraint of each body that keeps areas, and the one behind its last.
     """
     now, ticks = state.constraint_area_now, state.constraint_area_ticks
-    for k in range(areas[body, 0], areas[body, 1]):
-        if state.constraint_kind[k] != AREA:
+    for k in range(state.constraint_kind.shape[0]):
+        if state.constraint_kind[k] != AREA or not _is_of_body(state, areas, body, k):
             continue
         if ticks[k] == 0 or duration == 0:
             now[k] = state.constraint_rest[k, 0] if duration > 0 else 0.0

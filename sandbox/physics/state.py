@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import ArrayKind, Floats
-from sandbox.physics.marks import EDGES, GRAB_MATERIAL, LAWS, LONGEST_RAMP
+from sandbox.physics.marks import EDGES, GRAB_MATERIAL, LAWS, LONGEST_RAMP, MOST_PARTICLES
 from sandbox.physics.terrain import Terrain
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -162,6 +162,7 @@ class StateArrays:
     unmoved = _array("unmoved", P, BOOL, "", "whether it has not taken a step yet: its velocity is that of the tick, not of half a step before", sparse=True)
     untouchable = _array("untouchable", P, BOOL, "", "whether the level lets no hand touch it", sparse=True)
     unreturnable = _array("unreturnable", P, F64, "J", "energy that springs of its body count and cannot give back, at its free particle of lowest slot", sparse=True)
+    split_from = _array("split_from", P, I32, "slot", "the particle that it is of the same body as, where a cut made it; -1: none did", sparse=True, usual=-1, of=range(-1, MOST_PARTICLES))
 
     particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True, of=P)
     particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True, of=P)
@@ -184,6 +185,7 @@ class StateArrays:
     ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True, of=range(LONGEST_RAMP + 1))
     belt = _array("belt", S, F64, "m/s", "how fast its surface runs as an edge, to the right of who stands on it", topology=True, sparse=True)
     spring_untouchable = _array("spring_untouchable", S, BOOL, "", "whether the level lets no hand touch it", sparse=True)
+    is_split = _array("split", S, BOOL, "", "whether a cut made it, along a side of a triangle that it divided", sparse=True)
 
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True, of=range(2))
     constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True, of=C)

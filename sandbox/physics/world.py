@@ -1,6 +1,6 @@
 """World: particles, springs, constraints, settings and tick, with the only methods that change them."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -8,28 +8,31 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import Floats, SlotRows, Slots, empty
 from sandbox.physics.breaking import StrainLimits, unlimited
-from sandbox.physics.commands.command import PROGRAM, Commanded, solve
+from sandbox.physics.commands.command import NO_ROWS, PROGRAM, Commanded, solve
 from sandbox.physics.commands.command_table import (
     KINDS,
     OF_HANDS,
     OF_SOLVER,
     OF_TOPOLOGY,
+    RefusedCommand,
     carry_out,
     check_fields,
     numbers_of,
 )
+from sandbox.physics.commands.cutting import ASKED
 from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraints_of, rests_of
 from sandbox.physics.driving import Actuators, drive_muscles, drives_of
 from sandbox.physics.jit import bundle
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES
 from sandbox.physics.keeping.equipment import Capacity, Equipment, FirmBody, Joined, Names, Surface
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
 from sandbox.physics.rules import Rules
 from sandbox.physics.sanitise import Containment
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.softness.kernels.firm import FormTable
-from sandbox.physics.state import ABSURD, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
+from sandbox.physics.state import ABSURD, COLUMNS, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS
 from sandbox.physics.ways import Ways
@@ -42,6 +45,8 @@ _GRAB_NAMES = [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
 # weight. Lower lags behind the mouse, higher tears what is soft.
 HAND_STRENGTH = 100.0
 
+# What a cut may need more rows of.
+_OF_CUTS = (Family.PARTICLE, Family.SPRING, Family.CONSTRAINT, Family.CORNER)
 # Attributes that another value of counts as a change of topology. From a step's contacts nothing is derived.
 _WATCHED = frozenset(
     {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules", "ways", "area_constraints"}
@@ -447,7 +452,16 @@ class World(StateArrays):
         )  # fmt: skip
         values.setdefault("duration", 0)
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
-        numbers = carry_out(self.lent, giver, name, values, self)
+        try:
+            numbers = carry_out(self.lent, giver, name, values, self)
+        except RefusedCommand as refused:
+            if refused.reason != NO_ROWS:
+                raise
+            rows = refused.numbers[-ASKED:]
+            for family, count in zip(_OF_CUTS, map(int, rows), strict=True):
+                grow(self, family, count, {})
+            numbers = carry_out(self.lent, giver, name, {**values, "rows": rows}, self)
+            self.name_slots_to(self.particle_count, self.spring_count)
         changes = KINDS[name].changes
         if changes == OF_SOLVER:
             self._multiply_contacts(numbers[-1])
@@ -466,9 +480,12 @@ class World(StateArrays):
         """Let a pinned particle move again, with the mass it has."""
         self.command("unpin", particle=particle)
 
-    def cut(self, springs: Sequence[int] | Slots) -> None:
-        """Take springs out of the world, and the constraints that they were a side of; their slots stay."""
-        self.command("cut_springs", springs=springs)
+    def cut(self, springs: Sequence[int] | Slots, at: Sequence[float] | Floats = ()) -> None:
+        """Take springs out of the world, and the constraints that they were a side of; their slots stay.
+
+        at: where each is cut, as a share of it from its first end. What keeps areas is parted there, see cutting.py.
+        """
+        self.command("cut_springs", springs=springs, at=at)
 
     def break_springs(self, springs: Sequence[int] | Slots) -> None:
         """Take out springs that broke by themselves: the pieces of a body keep its energy."""
@@ -565,22 +582,6 @@ class World(StateArrays):
             arguments.slot(argument, count, "rows", arguments.FARTHEST)
         self.particle_naming.forget_beyond(particle_count)
         self.spring_naming.forget_beyond(spring_count)
-
-
-def grow(world: World, family: Family, count: int, arrays: Mapping[str, ArrayLike]) -> None:
-    """Append rows of a family to a world's arrays: values that were checked, or usual ones for others to fill in."""
-    room, mine = world._capacity.appended, world.__dict__
-    for column in FAMILIES[family]:
-        name = column.name
-        grown = room(name, mine[name], count)
-        grown[len(grown) - count :] = arrays.get(name, column.usual)
-        # One change of topology for all of them, however many there are.
-        mine[name] = grown
-        if column.guarded:
-            good = world.good[name] = room(f"good {name}", world.good[name], count)
-            good[len(good) - count :] = grown[len(grown) - count :]
-    world.topology_version += 1
-    world.may_fly = True
 
 
 def _lend(world: World) -> Any:

@@ -69,7 +69,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from sandbox.editor.kinds.editing import BodyEditing
-from sandbox.editor.kinds.editing import Motion
+from sandbox.editor.kinds.editing import PlaneMap
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option
 from sandbox.editor.tools.drawing_tool import EditorTool
@@ -103,7 +103,7 @@ class LadderEditing(BodyEditing[LadderDef]):
     tools: ClassVar = (EditorTool("ladder", "Shift+K", "Ladder", LadderDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         return {"position": motion.point(self.body.position), "width": self.body.width * motion.factor}
 '''
 

@@ -50,7 +50,7 @@ GOOD: dict[str, dict[str, Any]] = {
     "release": {"grab": 1},
     "pin": {"particle": "FREE.3"},
     "unpin": {"particle": "FREE.1"},
-    "cut_springs": {"springs": ["SPRING.1", "SPRING.2", "SPRING.1"]},
+    "cut_springs": {"springs": ["SPRING.1", "SPRING.2", "SPRING.1"], "at": [0.25, 0.5, 0.25]},
     "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0", "duration": 7},
     "set_drive": {"part": "PART.1", "value": -1},
     "hold_key": {"key": "g", "down": True},
@@ -82,8 +82,11 @@ BAD: dict[str, list[dict[str, Any]]] = {
     "pin": [{"particle": value} for value in ("no", "+hand.1", 0, -1, None, "FREE.1", NAN, True, {})],
     "unpin": [{"particle": value} for value in ("no", "+hand.1", 0, -1, None, "FREE.2", NAN, True, [])],
     "cut_springs": [
-        {"springs": value}
-        for value in (["SPRING.1", "no"], ["SPRING.1", "SPRING.0"], ["+hand.1"], [0], "SPRING.1", None, [None], NAN)
+        *(
+            {"springs": value}
+            for value in (["SPRING.1", "no"], ["SPRING.1", "SPRING.0"], ["+hand.1"], [0], "SPRING.1", None, [None], NAN)
+        ),
+        *({"at": value} for value in ([0.5, 1.5, 0.5], [-1e-9, 0, 0], [NAN, 0, 0], [None, 0, 0], "0.5", 1, None, {})),
     ],
     "break_springs": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
     "part_bodies": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],

@@ -16,12 +16,13 @@ from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Renderer
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
+from sandbox.session.commands import CutSprings
 from sandbox.session.session import Session
 from tests.page.browser import Browser
 from tests.page.levels import level_page
 from tests.page.opened import START_OVER, opened, saved
 from tests.page.test_drawing import DRAW, MOST, SIZE, USUAL, _blocks
-from tests.support.cutting import actor_of, advance, crossed, cut
+from tests.support.cutting import actor_of, advance, crossed, cut_along
 
 BEFORE, AFTER = 60, 120
 CUTS = {
@@ -31,24 +32,26 @@ CUTS = {
 }
 
 
+@pytest.mark.parametrize("is_along", [False, True])
 @pytest.mark.parametrize("name", CUTS)
 def test_a_page_parts_bodies_to_the_bits_and_the_picture_of_the_desktop(
-    browser: Browser, tmp_path: Path, name: str
+    browser: Browser, tmp_path: Path, name: str, is_along: bool
 ) -> None:
     level = load_level(name)
     session = Session(level)
     advance(session, BEFORE)
-    springs = [crossed(session, actor_of(level, body), stroke) for body, stroke in CUTS[name]]
-    for body, stroke in CUTS[name]:
-        cut(session, body, stroke)
+    cuts = [cut_along(session, body, stroke) for body, stroke in CUTS[name]]
+    cuts = cuts if is_along else [CutSprings(each.springs) for each in cuts]
+    for each in cuts:
+        session.submit(each)
+    records = [{"type": "cut_springs", "springs": each.springs, "at": each.at} for each in cuts]
     advance(session, AFTER)
     tab = opened(browser, tmp_path, level_page(name))
     tab.evaluate(START_OVER)
     found = tab.evaluate(
         f"""for (let k = 0; k < {BEFORE}; k++) page.toy.tick();
         const whole = page.toy.world.view('state.owner').join();
-        {json.dumps(springs)}.forEach((springs, k) =>
-          page.toy.run.submit({{ type: 'cut_springs', springs }}, 100 + k));
+        {json.dumps(records)}.forEach((record, k) => page.toy.run.submit(record, 100 + k));
         for (let k = 0; k < {AFTER}; k++) page.toy.tick();
         [page.toy.world.hash().whole, whole !== page.toy.world.view('state.owner').join()]"""
     )

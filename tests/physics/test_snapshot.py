@@ -9,13 +9,14 @@ import pytest
 from sandbox.physics import snapshot as snapshot_module
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.driving import Actuators
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.step import step
-from sandbox.physics.world import World, grow
+from sandbox.physics.world import World
 from tests.support.physics_scenes import grid, network, run, scaled
 
 

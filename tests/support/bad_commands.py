@@ -15,10 +15,11 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import Actuators
 from sandbox.physics.jit import way
 from sandbox.physics.keeping.equipment import FirmBody, StiffForm
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.kits.removing import remove_particles
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import COLUMNS, Family
-from sandbox.physics.world import World, grow
+from sandbox.physics.world import World
 
 NAN, INF = math.nan, math.inf
 # Of a world of `made`: particles 0 to 3, of which 3 was removed, cursors of hands from 4 on; springs 0 to 2, of which 2

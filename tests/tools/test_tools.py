@@ -1,10 +1,13 @@
 """Tools: plain pointer events over a snapshot become commands."""
 
+import json
 from itertools import count
 
+import numpy as np
 import pytest
 
 from sandbox.level.document.model import Level
+from sandbox.level.reading.parse import parse_level
 from sandbox.session.commands import CutSprings, Grab, MoveGrab, Pin, Release, Unpin
 from sandbox.session.session import Session
 from sandbox.tools.click import PinTool
@@ -200,3 +203,51 @@ def test_tools_leave_the_snapshot_and_the_session_alone(session):
             tool.handle(event, before)
     assert (before.position == session.snapshot().position).all()
     assert session.tick == 0
+
+
+JELLY = {
+    "type": "jelly", "id": "it", "shape": {"box": [1.6, 1.6]}, "position": [0.0, 0.0], "spacing": 0.4,
+    "material": "soft",
+}  # fmt: skip
+
+
+@pytest.fixture
+def jelly():
+    level = {
+        "format": "spring-sandbox/level", "version": 3, "name": "one jelly", "contacts": {}, "bodies": [JELLY],
+        "materials": {"soft": {"stiffness": 0.2, "damping": 0.4}}, "settings": {"gravity": [0.0, 0.0]},
+    }  # fmt: skip
+    return Session(parse_level(json.dumps(level).encode(), "one jelly"))
+
+
+def answers_of(session, tool, *events):
+    return [tool.handle(event, session.snapshot()) for event in events]
+
+
+def test_a_stroke_through_a_jelly_parts_it_once_it_has_left_it(jelly):
+    tool = CutTool(jelly.new_gesture)
+    steps = [move(0.1, y) for y in (0.9, 0.5, 0.1, -0.3, -0.7)]
+    answers = answers_of(jelly, tool, down(0.1, 1.2), *steps, move(0.1, -1.2), up(0.1, -1.2))
+    assert [len(commands(answer)) for answer in answers] == [0] * 6 + [1, 0]
+    (command,) = commands(answers[6])
+    world = jelly.world
+    a, b = (world.position[ends[list(command.springs)]] for ends in (world.particle_a, world.particle_b))
+    share = np.array(command.at)[:, None]
+    np.testing.assert_allclose(((1.0 - share) * a + share * b)[:, 0], 0.1, atol=1e-5)
+    jelly.submit(command)
+    jelly.apply_pending()
+    assert len(np.unique(world.owner[world.particle_active])) == 2
+
+
+def test_a_stroke_that_ends_in_a_jelly_and_one_that_begins_there_cut_as_far_as_they_go(jelly):
+    tool = CutTool(jelly.new_gesture)
+    for events in ((down(0.1, 1.2), move(0.1, 0.3), up(0.1, 0.3)), (down(0.1, 0.3), move(0.1, 1.2), up(0.1, 1.2))):
+        cuts = [command for answer in answers_of(jelly, tool, *events) for command in commands(answer)]
+        assert len(cuts) == 1 and len(cuts[0].at) == len(cuts[0].springs) > 1
+
+
+def test_a_click_in_a_jelly_cuts_the_spring_under_it_when_it_is_let_go(jelly):
+    tool = CutTool(jelly.new_gesture)
+    answers = answers_of(jelly, tool, down(0.2, 0.01), up(0.2, 0.01))
+    assert commands(answers[0]) == [] and [len(each.springs) for each in commands(answers[1])] == [1]
+    assert commands(answers[1])[0].at == ()

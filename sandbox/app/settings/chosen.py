@@ -91,7 +91,7 @@ SETTINGS: tuple[Setting, ...] = (
     Amount("scale", "Size of widgets", "Look", *SCALES, 0.125, tip="Ctrl++ and Ctrl+- do the same"),
     OneOf("effects", "Shadows and effects", "Look", (("auto", "Automatic"), ("on", "On"), ("off", "Off")),
           "Automatic: switched off while drawing is slow"),
-    OneOf("motion", "Motion", "Look", (("full", "Full"), ("less", "Reduced")),
+    OneOf("motion", "PlaneMap", "Look", (("full", "Full"), ("less", "Reduced")),
           "Reduced: pictures of the gallery stand still, no dust and no sparks"),
     OneOf("sound", "Sound", "Sound", (("on", "On"), ("off", "Off")), "The M key and the button in the bar do the same"),
     Amount("volume", "Volume", "Sound", 0.0, 1.0, 0.1, 0.6),

@@ -18,11 +18,12 @@ from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
 from sandbox.physics.analysis import applied_forces, query
+from sandbox.physics.marks import SOLID_LEFT
 from sandbox.physics.meshing import fitting
 from sandbox.physics.softness import body_motion
 from sandbox.session import summary, tuning
 from sandbox.session.replay import format, link
-from sandbox.tools import drag, drawing, pulling
+from sandbox.tools import cut, drag, drawing, pulling
 
 MODULE = WEB / "shared.js"
 _HEAD = """// Shared: values that the window goes by too. Made by `python -m sandbox.app.site.shared_values`.
@@ -42,7 +43,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "HANDS": {
             "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": applied_forces.HAND_AT_LIMIT,
             "PICK_RADIUS": stage.PICK_RADIUS, "UNITS": hand_labels.UNITS,
-            "TIME_STANDS": drag.TIME_STANDS,
+            "TIME_STANDS": drag.TIME_STANDS, "SOLID": SOLID_LEFT, "SHARES": 10**cut.DIGITS,
         },
         "GAMEPAD": _of(gamepads, "ACROSS", "UPWARDS", "BUTTONS", "PRESSES", "LETS_GO"),
         "MAKING": _of(pulling, "SEGMENTS", "ROPE_MASS", "SHARE", "PIN_RADIUS", "PIN_SHARE", "TOO_SHORT")

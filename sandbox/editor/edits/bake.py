@@ -413,10 +413,11 @@ def _kept(body: BodyDef, shift: Shift, pose: Any, pinned: tuple[int, ...], cut: 
 
 def _with_balls(level: Level, world: LevelWorld, names: dict[str, str]) -> Level:
     """The level with the loose particles that were added."""
+    # What cuts have added is of bodies: a level keeps that springs are cut, and not where.
+    is_loose = world.particle_active & (world.split_from < 0)
     slots = [
-        slot for slot, name in enumerate(world.particle_names)
-        if name.startswith(ADDED_PARTICLE) and world.particle_active[slot]
-    ]  # fmt: skip
+        slot for slot, name in enumerate(world.particle_names) if name.startswith(ADDED_PARTICLE) and is_loose[slot]
+    ]
     if not slots:
         return level
     ids = free_ids(taken_ids(level), ["ball"] * len(slots))
@@ -441,8 +442,10 @@ def _with_springs(level: Level, world: LevelWorld, names: dict[str, str]) -> Lev
     """The level with the springs that were added one by one; names: see `_with_things`."""
     of_bodies = {name for joined in world.joined for name in joined.spring_names}
     materials, springs = dict(level.materials), list(level.springs)
+    is_split = world.split_from >= 0
+    is_added = world.spring_active & ~(world.is_split | is_split[world.particle_a] | is_split[world.particle_b])
     for slot, name in enumerate(world.spring_names):
-        if not name.startswith(ADDED_SPRING) or name in of_bodies or not world.spring_active[slot]:
+        if not name.startswith(ADDED_SPRING) or name in of_bodies or not is_added[slot]:
             continue
         ends = [_reference(world.particle_names[end[slot]], names) for end in (world.particle_a, world.particle_b)]
         material = NissenMaterial(stiffness=float(world.stiffness[slot]), damping=float(world.damping[slot]))

@@ -24,7 +24,7 @@ from sandbox.editor.items import (
     group_of,
     keys,
 )
-from sandbox.editor.kinds.editing import Motion, mapped_velocity, stretch
+from sandbox.editor.kinds.editing import PlaneMap, mapped_velocity, stretch
 from sandbox.editor.kinds.table import editing
 from sandbox.editor.panel.field_info import DEGREES, fields_of
 from sandbox.editor.scene import Scene, make_scene, positions
@@ -55,7 +55,7 @@ def move(document: Document, dx: float, dy: float) -> Document:
 def rotate(document: Document, angle: float, centre: Point) -> Document:
     """Turn the selection by an angle [rad], counter-clockwise, about a centre [m]; start velocities turn with it."""
     _finite("a turn", angle, *centre)
-    return _mapped(document, Motion(centre, angle=math.remainder(angle, 2.0 * math.pi)))
+    return _mapped(document, PlaneMap(centre, angle=math.remainder(angle, 2.0 * math.pi)))
 
 
 def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
@@ -63,12 +63,12 @@ def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
     _finite("a scale", sx, sy, *centre)
     if min(sx, sy) <= 0.0:
         raise EditError("a scale is a number above 0; use Mirror to turn something over")
-    return _mapped(document, Motion(centre, sx=sx, sy=sy))
+    return _mapped(document, PlaneMap(centre, sx=sx, sy=sy))
 
 
 def scale_exactly(document: Document, factor: float) -> Document:
     """Make the selection as much larger about [0, 0], to the last bit, for what is to run as it did."""
-    return _mapped(document, Motion((0.0, 0.0), sx=factor, sy=factor), lambda part: part)
+    return _mapped(document, PlaneMap((0.0, 0.0), sx=factor, sy=factor), lambda part: part)
 
 
 def can_scale_unevenly(document: Document) -> bool:
@@ -81,7 +81,7 @@ def can_scale_unevenly(document: Document) -> bool:
 def mirror(document: Document, axis: Axis, centre: Point) -> Document:
     """Turn the selection over, left to right ("x") or upside down ("y"), about a centre [m]."""
     _finite("a centre", *centre)
-    return _mapped(document, Motion(centre, sx=-1.0) if axis == "x" else Motion(centre, sy=-1.0))
+    return _mapped(document, PlaneMap(centre, sx=-1.0) if axis == "x" else PlaneMap(centre, sy=-1.0))
 
 
 def align(document: Document, edge: Edge) -> Document:
@@ -184,7 +184,7 @@ def _rounded(value: Any) -> Any:
     return round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
 
 
-def _mapped(document: Document, motion: Motion, tidy: Callable[[Any], Any] = without_dust) -> Document:
+def _mapped(document: Document, motion: PlaneMap, tidy: Callable[[Any], Any] = without_dust) -> Document:
     if (motion.angle, motion.sx, motion.sy) == (0.0, 1.0, 1.0):
         return document
     level, selection = document.level, document.selection
@@ -204,7 +204,7 @@ def _mapped(document: Document, motion: Motion, tidy: Callable[[Any], Any] = wit
     return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
 
 
-def _stretched(old: Level, new: Level, selection: Selection, motion: Motion, tidy: Callable[[Any], Any]) -> Level:
+def _stretched(old: Level, new: Level, selection: Selection, motion: PlaneMap, tidy: Callable[[Any], Any]) -> Level:
     """The new level with what a motion makes of the given rest lengths between selected things of the old."""
     springs = _inside_springs(old, selection)
     scene = make_scene(old)
@@ -237,7 +237,7 @@ def _scaled(spring: SpringDef, factor: float) -> SpringDef:
     return spring
 
 
-def _spring_stretch(scene: Scene, spring: SpringDef, motion: Motion) -> float:
+def _spring_stretch(scene: Scene, spring: SpringDef, motion: PlaneMap) -> float:
     (ax, ay), (bx, by) = (scene.position[scene.slot(end)].tolist() for end in (spring.a, spring.b))
     return stretch((ax, ay), (bx, by), motion)
 
@@ -260,7 +260,7 @@ def shifted(body: Placed, dx: float, dy: float) -> Placed:
     return replaced(body, **changes)
 
 
-def mapped_particle(particle: ParticleDef, motion: Motion) -> ParticleDef:
+def mapped_particle(particle: ParticleDef, motion: PlaneMap) -> ParticleDef:
     """A loose particle, its place and start motion mapped; its disc grows with a scale."""
     return replaced(
         particle,
@@ -271,13 +271,13 @@ def mapped_particle(particle: ParticleDef, motion: Motion) -> ParticleDef:
     )
 
 
-def mapped_terrain(piece: TerrainDef, motion: Motion) -> TerrainDef:
+def mapped_terrain(piece: TerrainDef, motion: PlaneMap) -> TerrainDef:
     """A piece of terrain with its corners mapped."""
     polyline, polygon = (corners and motion.points(corners) for corners in (piece.polyline, piece.polygon))
     return replaced(piece, polyline=polyline, polygon=polygon)
 
 
-def mapped_body(body: AnyBody, motion: Motion) -> tuple[AnyBody, Points]:
+def mapped_body(body: AnyBody, motion: PlaneMap) -> tuple[AnyBody, Points]:
     """A body mapped, and where the particles of its old form lie in the new one [m] (n, 2).
 
     Where the parameters of its kind cannot say what becomes of it, its pose does. Raises EditError for a stretch that

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from sandbox.editor.document import Document, EditError, check_terrain, checked, first_fault, subject, validated
 from sandbox.editor.edits.names import free_id
 from sandbox.editor.items import Definition, Item, Selection, changed
-from sandbox.editor.kinds.editing import Motion
+from sandbox.editor.kinds.editing import PlaneMap
 from sandbox.editor.scene import outline_of
 from sandbox.level.document.model import Level, TerrainDef, WallsDef, ZoneDef
 from sandbox.level.format.level_error import shown
@@ -133,7 +133,7 @@ def shifted_zone(zone: ZoneDef, dx: float, dy: float) -> ZoneDef:
     return _placed(zone, lambda x, y: (x + dx, y + dy))
 
 
-def mapped_zone(zone: ZoneDef, motion: Motion) -> ZoneDef:
+def mapped_zone(zone: ZoneDef, motion: PlaneMap) -> ZoneDef:
     """A zone mapped; a box that then lies askew becomes a polygon. Raises EditError where it cannot be so."""
     if zone.circle is not None:
         if not motion.is_even:

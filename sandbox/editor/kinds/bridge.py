@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing, Motion
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap
 from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
 from sandbox.editor.tools.drawing_options import (
     LineOptions,
@@ -64,11 +64,11 @@ class BridgeEditing(BodyEditing[BridgeDef]):
         """True: its height is a field of its own."""
         return True
 
-    def lies_askew(self, motion: Motion) -> bool:
+    def lies_askew(self, motion: PlaneMap) -> bool:
         """Whether a motion turns it: its bottom row then starts no longer straight below."""
         return motion.angle != 0.0
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The ends of what becomes the top row, and the height, after a motion."""
         body = self.body
         drop = -body.height if motion.sy < 0.0 else 0.0

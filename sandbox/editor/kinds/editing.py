@@ -1,4 +1,4 @@
-"""BodyEditing: what the editor adds to a kind of body, and Motion: the maps of the plane that it follows."""
+"""BodyEditing: what the editor adds to a kind of body, and PlaneMap: the maps of the plane that it follows."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Motion:
+class PlaneMap:
     """A map of the plane about a fixed centre [m]: a turn by angle [rad], or a scale by sx, sy (negative: mirrored)."""
 
     centre: Point
@@ -59,14 +59,14 @@ class Motion:
         return angle if abs(angle) <= math.pi else math.remainder(angle, 2.0 * math.pi)
 
 
-def mapped_velocity(velocity: Point, motion: Motion) -> Point:
+def mapped_velocity(velocity: Point, motion: PlaneMap) -> Point:
     """A velocity [m/s] after a motion, which scales lengths alone."""
     # Turned or mirrored things go where they then look.
-    direction = Motion((0.0, 0.0), motion.angle, math.copysign(1.0, motion.sx), math.copysign(1.0, motion.sy))
+    direction = PlaneMap((0.0, 0.0), motion.angle, math.copysign(1.0, motion.sx), math.copysign(1.0, motion.sy))
     return velocity if velocity == (0.0, 0.0) else direction.vector(velocity)
 
 
-def stretch(a: Point, b: Point, motion: Motion) -> float:
+def stretch(a: Point, b: Point, motion: PlaneMap) -> float:
     """How much farther apart two places [m] are after a motion; of one and the same place, as lengths in all."""
     if motion.is_even or a == b:
         return motion.factor
@@ -96,14 +96,14 @@ class BodyEditing(Generic[Body]):
         """Whether the body can be made longer without being made higher as much."""
         return False
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The fields that a motion changes, other than pose and velocity.
 
         motion: even where the body cannot be stretched.
         """
         raise NotImplementedError
 
-    def lies_askew(self, motion: Motion) -> bool:
+    def lies_askew(self, motion: PlaneMap) -> bool:
         """Whether no fields can say where a motion takes it, so that it needs a pose."""
         return False
 
@@ -112,6 +112,6 @@ class BodyEditing(Generic[Body]):
         return {field: value}
 
 
-def mapped_centre(body: Any, motion: Motion) -> dict[str, Any]:
+def mapped_centre(body: Any, motion: PlaneMap) -> dict[str, Any]:
     """Place and angle of a round body after a motion."""
     return {"position": motion.point(body.position), "angle": motion.turned(body.angle)}

@@ -4,7 +4,7 @@ import math
 from typing import Any, ClassVar
 
 from sandbox.editor.kinds.bridge import BridgeDrawing
-from sandbox.editor.kinds.editing import BodyEditing, Motion
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap
 from sandbox.editor.tools.drawing_bodies import length, rounded
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
@@ -43,7 +43,7 @@ class GirderEditing(BodyEditing[GirderDef]):
         """Whether the girder can be stretched: it lies along an axis."""
         return self.body.start[0] == self.body.end[0] or self.body.start[1] == self.body.end[1]
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """Ends, height and pins after a motion."""
         body = self.body
         start, end = motion.point(body.start), motion.point(body.end)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from sandbox.editor.document import EditError
-from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, mapped_centre
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
@@ -179,7 +179,7 @@ class JellyEditing(BodyEditing[JellyDef]):
         # What cannot be meshed is refused by the level's own check.
         return changes | ({"particle_mass": self.body.particle_mass * before / after} if after else {})
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """Place, angle, spacing, shape and holes after a motion."""
         body = self.body
         result = mapped_centre(body, motion) | {"spacing": body.spacing * motion.factor}

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_velocity
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, mapped_velocity
 from sandbox.level.kinds.mesh import MeshDef
 
 
@@ -15,7 +15,7 @@ class MeshEditing(BodyEditing[MeshDef]):
         """True: a mesh can be stretched any way."""
         return True
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The places of all particles, their velocities and triangles, after a motion."""
         body = self.body
         velocities = body.velocities and tuple(mapped_velocity(velocity, motion) for velocity in body.velocities)

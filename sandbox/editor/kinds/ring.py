@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
@@ -75,6 +75,6 @@ class RingEditing(BodyEditing[RingDef]):
     tools: ClassVar = (EditorTool("ring", "Shift+O", "Ring with air inside: a balloon", RingDrawing),)
     formless = frozenset({"particle_mass", "inflation", "bending"})
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """Place, angle and radius after a motion."""
         return mapped_centre(self.body, motion) | {"radius": self.body.radius * motion.factor}

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing, Motion, stretch
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, stretch
 from sandbox.editor.tools.drawing_bodies import LineDrawing, fitting_count, length, rounded
 from sandbox.editor.tools.drawing_options import (
     LineOptions,
@@ -71,7 +71,7 @@ class RopeEditing(BodyEditing[RopeDef]):
         """True: a rope has no height."""
         return True
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The ends, and the length of the links, after a motion."""
         body = self.body
         ends = {"start": motion.point(body.start), "end": motion.point(body.end)}

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
@@ -59,6 +59,6 @@ class WebEditing(BodyEditing[WebDef]):
     tools: ClassVar = (EditorTool("web", "W", "Web", WebDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """Place, angle and radius after a motion."""
         return mapped_centre(self.body, motion) | {"radius": self.body.radius * motion.factor}

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
-from sandbox.editor.kinds.editing import BodyEditing, Motion, mapped_centre
+from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, mapped_centre
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length, rounded
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
@@ -94,7 +94,7 @@ class WheelEditing(BodyEditing[WheelDef]):
     tools: ClassVar = (EditorTool("wheel", "Q", "Wheel with a hub", WheelDrawing),)
     formless = frozenset({"particle_mass", "hub_mass", "pin", "motor", "touches_mount"})
 
-    def mapped(self, motion: Motion) -> dict[str, Any]:
+    def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """Place, angle, radius, thickness and motor after a motion."""
         body = self.body
         sizes = {"radius": body.radius * motion.factor, "thickness": body.thickness * motion.factor}

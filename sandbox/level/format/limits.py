@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
+from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS, MOST_PARTICLES, MOST_SPRINGS
 from sandbox.physics.meshing.fitting import LEAST_SPACING
 from sandbox.physics.settings import DEFAULT_SOLVER as DEFAULT_SOLVER
 from sandbox.physics.settings import SUBSTEPS as SUBSTEPS
@@ -19,8 +19,8 @@ CHECK_LIMIT = 1_000
 FAULT_LIMIT = 50  # lines that one refusal prints
 
 # After expansion; memory and time of a tick grow with them.
-PARTICLE_LIMIT = 100_000
-SPRING_LIMIT = 400_000
+PARTICLE_LIMIT = MOST_PARTICLES
+SPRING_LIMIT = MOST_SPRINGS
 # Work of filling polygons in one level: corners in all, and per polygon grid rows x (columns + corners).
 CORNER_LIMIT = 4_096
 POLYGON_WORK_LIMIT = 4_000_000

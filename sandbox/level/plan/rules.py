@@ -18,10 +18,11 @@ from sandbox.level.rules.rule import WALLS, QuestionDef, RuleDef
 from sandbox.physics import rules
 from sandbox.physics.arrays import Slots
 from sandbox.physics.commands.command_table import CODES
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.rules import NOBODY, Rules, Terms, Things
 from sandbox.physics.state import Family
 from sandbox.physics.ways import followed
-from sandbox.physics.world import World, grow
+from sandbox.physics.world import World
 from sandbox.physics.zones import BOX, CIRCLE, POLYGON, Zones
 
 _KINDS = {

@@ -222,12 +222,29 @@ export class Commands {
       sag != null && first ? this.#about.messages.butRigid : ''];
   }
 
+  /** Whether a kernel has done nothing, since it needs more rows.
+   * @type {(result: number) => boolean} */
+  wantsRows(result) {
+    const { reasons, noRows } = this.#about.refusals;
+    return result < 0 && -result % reasons === noRows;
+  }
+
+  /** How many rows it needs, of what its numbers end with.
+   * @type {(numbers: Float64Array) => Float64Array} */
+  rowsIn(numbers) {
+    return numbers.slice(-Number(this.#about.answers.rows));
+  }
+
   /** Whether a kernel has done it: throws in words where it has not. answers: its numbers afterwards.
    * @type {(record: Command, packed: Packed, result: number, answers: Float64Array) => void} */
   answer(record, { slots, numbers }, result, answers) {
     if (result >= 0) return;
     const { refusals: { reasons, bad }, messages, kinds } = this.#about, { type } = record;
     const reason = -result % reasons, place = Math.floor(-result / reasons), names = this.#names;
+    const { at } = /** @type {{ at?: number[] }} */ (record);
+    if (place === slots.length && at?.length && at.length !== slots.length) {
+      throw new Refusal(fill(messages.unequal, at.length, slots.length));
+    }
     if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
     const fields = kinds[type].slots, field = fields[Math.min(place, fields.length - 1)], slot = slots[place];
     const { names: kind, noun } = new Map(this.#named(type)).get(field) ?? {}, name = kind && names[kind][slot];
@@ -245,7 +262,10 @@ export class Commands {
    * @type {(record: Command) => NamedRecord} */
   named(record) {
     const names = this.#names, kinds = new Map(this.#named(record.type));
-    const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
+    /** @type {(field: string, value: unknown) => boolean} */
+    const isSaid = (field, value) => value !== null && value !== undefined
+      && (kinds.has(field) || !Array.isArray(value) || value.length > 0);
+    const entries = Object.entries(record).filter(([field, value]) => isSaid(field, value));
     return { type: record.type, ...Object.fromEntries(entries.map(([field, value]) => {
       const kind = kinds.get(field)?.names;
       if (!kind) return [field, value];

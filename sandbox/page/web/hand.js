@@ -2,6 +2,7 @@
 // time stands what is dragged goes elsewhere.
 import { Cursor, CURSOR_POINTER, thingOf } from './cursor.js';
 import { HANDS } from './shared.js';
+import { Stroke } from './stroke.js';
 /** @import { Camera } from './draw.js' */
 /** @import { Maker } from './maker.js' */
 /** @import { Run } from './run.js' */
@@ -23,9 +24,10 @@ const LONG = 500, RESTS = 10;
  * @typedef {Pixel & { time: number }} Touch */
 /**
  * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m]; within: how far it reaches
- * [m]; cut: how many springs it has cut; asks: of which particle it asks for a menu; timer: until it does.
+ * [m]; cut: how many springs it has cut, by a stroke; asks: of which particle it asks for a menu; timer: until it does.
  * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'carry' | 'make' | 'done', began: Touch, isBeside: boolean,
- *   hand: number | null, carried: number, point: Point, within: number, gesture: number, cut: number, asks: number | null, timer: number }} Pointer
+ *   hand: number | null, carried: number, point: Point, within: number, gesture: number, cut: number,
+ *   stroke: Stroke | null, asks: number | null, timer: number }} Pointer
  */
 /**
  * What a hand holds, where it draws it [m], how far that is from the pointer, how far that reaches [m], and its largest
@@ -268,7 +270,7 @@ export class Hands {
       within = REACH[event.pointerType] / this.camera.zoom;
     /** @type {Pointer} */
     const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, carried: -1, point, within,
-      gesture: 0, cut: 0, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
+      gesture: 0, cut: 0, stroke: null, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
     const near = new Near(this.run.world), { particle: marked = null } = event;
     const touched = marked ?? near.particle(point, within);
@@ -278,7 +280,7 @@ export class Hands {
     pointer.isBeside = this.tool !== 'cut' && touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
       Object.assign(pointer, { kind: 'cut', gesture: this.run.newGesture() });
-      this.#cut(pointer, near.spring(point, within / 2));
+      pointer.stroke = new Stroke(near, point, within, (springs, at) => this.#cut(pointer, springs, at));
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
     else if (this.tool === 'erase') this.#erase(touched ?? free, pointer);
     else if (this.maker.makes(this.tool)) {
@@ -367,10 +369,10 @@ export class Hands {
     if (this.run.submit({ type: 'remove', particle }, this.run.newGesture(), this.say)) this.speak(`${thing} is gone.`);
   }
 
-  /** @type {(pointer: Pointer, springs: number[]) => void} */
-  #cut(pointer, springs) {
+  /** @type {(pointer: Pointer, springs: number[], at: number[]) => void} */
+  #cut(pointer, springs, at) {
     if (!springs.length) return;
-    if (this.run.submit({ type: 'cut_springs', springs }, pointer.gesture, this.say)) pointer.cut += springs.length;
+    if (this.run.submit({ type: 'cut_springs', springs, at }, pointer.gesture, this.say)) pointer.cut += springs.length;
   }
 
   /** The thing that a particle is of, as it is spoken of.
@@ -412,10 +414,8 @@ export class Hands {
     const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y),
       held = this.#heldBy(pointer);
     if (held) this.#aim(held, point);
-    else if (pointer.kind === 'cut') {
-      this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
-      pointer.point = point;
-    } else if (pointer.kind === 'carry') this.#carry(pointer, point);
+    else if (pointer.kind === 'cut') pointer.stroke?.go(new Near(this.run.world), point);
+    else if (pointer.kind === 'carry') this.#carry(pointer, point);
     else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
     else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
@@ -455,6 +455,7 @@ export class Hands {
     if (event.type === 'pointerup' && pointer.asks !== null) {
       this.menu({ particle: pointer.asks, x: pointer.x, y: pointer.y });
     }
+    pointer.stroke?.end(this.run.world);
     if (pointer.cut) this.speak(`Cut: ${pointer.cut} ${pointer.cut === 1 ? 'spring' : 'springs'}.`);
     const held = this.#heldBy(pointer);
     if (pointer.hand !== null && held) {

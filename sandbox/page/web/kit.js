@@ -278,6 +278,14 @@ export function unused(names, form) {
   return numbers.reduce((most, each) => Math.max(most, Number(each) + 1), 0);
 }
 
+/** Names of so many more particles and springs that are of no body.
+ * @type {(names: { particle: string[], spring: string[] }, particles: number, springs: number) => { particle: string[], spring: string[] }} */
+export function looseNames({ particle, spring }, particles, springs) {
+  const dot = unused(particle, /^\+\.(\d+)$/), colon = unused(spring, /^\+:(\d+)$/);
+  return { particle: Array.from({ length: particles }, (_, k) => `+.${dot + k}`),
+    spring: Array.from({ length: springs }, (_, k) => `+:${colon + k}`) };
+}
+
 /** What people see of a kit, which joins a world with these rows in use. Throws a Refusal.
  * @type {(kit: Kit, used: Counts, counts: Record<string, number>) => Joined} */
 export function seen({ look = {} }, { particle, spring }, counts) {

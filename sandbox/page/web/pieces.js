@@ -1,6 +1,6 @@
 // Pieces: what is left of a body of triangles where springs of it were cut, and which face each piece has.
 import { FACES } from './shared.js';
-/** @import { FilledBody, Flag, Piece, Point, Scene, Spot } from './types.js' */
+/** @import { Body, FilledBody, Flag, Piece, Point, Scene, SpringEnds, Spot } from './types.js' */
 /** @import { World } from './world.js' */
 
 /** @typedef {(slot: number) => Point} Form */
@@ -21,6 +21,28 @@ export function wholeTriangles(world) {
     found.push(rest[2 * k + 1] < 0 ? triangle.reverse() : triangle);
   }
   return found;
+}
+
+/** The springs that cuts have added and that are there.
+ * @type {(world: World, active: Flag) => SpringEnds[]} */
+export function splitSprings(world, active) {
+  const split = world.view('state.is_split'), a = world.view('state.particle_a'), b = world.view('state.particle_b');
+  /** @type {SpringEnds[]} */
+  const found = [];
+  split.forEach((is, s) => { if (is && active[s]) found.push([s, a[s], b[s]]); });
+  return found;
+}
+
+/** A body with what cuts have added to it.
+ * @type {<B extends Body | FilledBody>(body: B, split: SpringEnds[], world: World) => B} */
+export function withSplit(body, split, world) {
+  if (!('triangles' in body) || !body.triangles) return body;
+  const from = world.view('state.split_from'), own = new Set(body.slots);
+  const isOwn = (/** @type {number} */ slot) => own.has(slot) || own.has(from[slot]);
+  const springs = split.filter(([, a, b]) => isOwn(a) && isOwn(b));
+  if (!springs.length) return body;
+  return { ...body, springs: [...body.springs, ...springs],
+    slots: [...new Set([...body.slots, ...springs.flatMap(([, a, b]) => [a, b])])] };
 }
 
 /** The triangles of a body that are left. A body that keeps no areas has one while the springs along its sides are there.

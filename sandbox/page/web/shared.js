@@ -36,6 +36,8 @@ export const HANDS = {
   PICK_RADIUS: 14,
   UNITS: [[1000000000, 'GN'], [1000000, 'MN'], [1000, 'kN'], [1, 'N'], [0.001, 'mN']],
   TIME_STANDS: 'Time stands: here a hand only pulls, once time goes on (Space).',
+  SOLID: 2,
+  SHARES: 100000,
 };
 export const GAMEPAD = {
   ACROSS: [['a', 'd'], ['left', 'right']],

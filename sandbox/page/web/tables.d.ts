@@ -25,6 +25,7 @@ export interface StateArrays {
   unmoved: Uint8Array;
   untouchable: Uint8Array;
   unreturnable: Float64Array;
+  split_from: Int32Array;
   particle_a: Int32Array;
   particle_b: Int32Array;
   rest_length: Float64Array;
@@ -46,6 +47,7 @@ export interface StateArrays {
   ramp_ticks: Int32Array;
   belt: Float64Array;
   spring_untouchable: Uint8Array;
+  is_split: Uint8Array;
   constraint_kind: Int8Array;
   constraint_first: Int32Array;
   constraint_corners: Int32Array;
@@ -118,6 +120,7 @@ export interface Commands {
   cut_springs: {
     type: 'cut_springs';
     springs: number[];
+    at?: number[];
   };
   break_springs: {
     type: 'break_springs';

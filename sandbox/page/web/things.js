@@ -1,5 +1,5 @@
 // Things: the springs of a level, grouped into what is drawn; grouped again where one breaks.
-import { piecesOf, wholeTriangles, withFaces } from './pieces.js';
+import { piecesOf, splitSprings, wholeTriangles, withFaces, withSplit } from './pieces.js';
 import { THINGS } from './shared.js';
 /**
  * @import { Bars, Body, FilledBody, Flag, Join, Scene, SceneLook, SceneShape, Shape, SkinLook, Spot, SpringEnds,
@@ -49,7 +49,10 @@ export function thingsOf(scene, world, active, present) {
   const now = { scene, world, active, whole: wholeTriangles(world) };
   /** @type {Things} */
   const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
-  for (const body of scene.bodies) if (body.slots.some((slot) => present[slot])) addBody(things, body, now);
+  const split = splitSprings(world, active);
+  for (const body of scene.bodies) {
+    if (body.slots.some((slot) => present[slot])) addBody(things, split.length ? withSplit(body, split, world) : body, now);
+  }
   /** Joins of one look may be strands together.
    * @type {Map<string | Join, { look: Join, springs: SpringEnds[] }>} */
   const looks = new Map();

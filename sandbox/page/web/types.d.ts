@@ -72,7 +72,7 @@ export interface About {
   answers: Partial<Record<string, number>>;
   givers: Record<'HAND' | 'RULE' | 'PROGRAM', number>;
   // How a result says why and where a command was refused, and words for it; and which of these words tell what.
-  refusals: { reasons: number; words: Record<number, string>; bad: number };
+  refusals: { reasons: number; words: Record<number, string>; bad: number; noRows: number };
   filled: Record<'doing' | 'counted' | 'thing' | 'reach', number>;
   // Of other kernels that refuse: by how much reasons are multiplied in their answers, and which of these words are theirs.
   denied: { size: number; reasons: Record<number, number> };

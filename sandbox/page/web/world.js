@@ -1,28 +1,23 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
+import { aligned, KINDS, put } from './arrays.js';
 import { Commands, Refusal } from './commands.js';
 import { formCounts, formNames, formRows } from './forms.js';
 import { Hashes, isEqual } from './hash.js';
-import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, namesOf, packed, seen } from './kit.js';
+import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, looseNames, namesOf, packed, seen } from './kit.js';
 import { act } from './rules.js';
 /**
  * @import { About, AnyArray, Column, Command, Counts, Done, Joined, Kernels, Kit, Level, NameKind, SavedState,
  *   Settings, StateHash, View } from './types.js'
  */
 
-const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
-/** @type {Record<string, new (buffer: ArrayBuffer, offset: number, length: number) => AnyArray>} */
-const KINDS = {
-  f8: Float64Array, f4: Float32Array, i8: BigInt64Array, u4: Uint32Array, i4: Int32Array, i1: Int8Array, b1: Uint8Array,
-};
+const PAGE = 65536, WORD = 8, ADDRESS = 4, SHAPE = 5;
 // What is derived, in this order, each by a kernel of its own with an arena of its own; and words that one begins with.
 const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.kept.feature',
   'collisions.kept.impulse', 'collisions.kept.impact']);
-// Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
-const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
-/** @type {(size: number) => number} */
-const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
+// Room for the words of arguments of a call.
+const ARGUMENTS = 64, NONE = new Float64Array();
 
 /** @typedef {[address: number, count: number, size: number]} Span */
 
@@ -96,7 +91,7 @@ export class World {
     this.#second = { ...about.second.particle };
     this.commands = new Commands(about, this.names, { ...about.second, particle: this.#second });
     this.#arguments = aligned(kernels.__heap_base.value);
-    this.#base = aligned(this.#arguments + (ARGUMENTS + RECORD) * WORD);
+    this.#base = aligned(this.#arguments + ARGUMENTS * WORD);
     this.#end = this.#base;
     this.#reserve(image.length);
     const memory = new Uint8Array(kernels.memory.buffer);
@@ -307,12 +302,16 @@ export class World {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate, materials: this.counts.material });
     const { code, slots, numbers, changes } = packed;
-    const at = this.#arguments + ARGUMENTS * WORD, [listed] = this.#lent(BigInt64Array.from(slots, BigInt));
-    new Float64Array(this.#kernels.memory.buffer, at, numbers.length).set(numbers);
-    /** @type {(number | Span)[]} */
-    const given = [giver, code, listed, [at, numbers.length, WORD]];
-    const result = this.#inArena('command', [this.#block], ...given);
-    const answers = new Float64Array(this.#kernels.memory.buffer, at, numbers.length);
+    const given = this.#lent(BigInt64Array.from(slots, BigInt), Float64Array.from(numbers));
+    const call = () => this.#inArena('command', [this.#block], giver, code, ...given);
+    const answered = () => new Float64Array(this.#kernels.memory.buffer, given[1][0], numbers.length);
+    let result = call();
+    if (this.commands.wantsRows(result)) {
+      const [particle, spring, constraint, corner] = this.commands.rowsIn(answered());
+      this.#addRows({ particle, spring, constraint, corner }, looseNames(this.names, particle, spring));
+      result = call();
+    }
+    const answers = answered();
     this.commands.answer(record, packed, result, answers);
     if (changes === 'solver') {
       const factor = answers[numbers.length - 1];
@@ -337,14 +336,22 @@ export class World {
     }
   }
 
+  /** Add rows of families, with these names.
+   * @type {(more: Partial<Counts>, names: Partial<Record<NameKind, string[]>>) => void} */
+  #addRows(more, names) {
+    const added = Object.entries(more).map(([family, count]) => [family, this.counts[/** @type {keyof Counts} */ (family)] + count]);
+    /** @type {Counts} */
+    const then = { ...this.counts, ...Object.fromEntries(added) };
+    this.#grow(Object.assign(then, { breakable: then.breakable ? then.spring : 0 }));
+    this.counts = then;
+    this.#name(names);
+  }
+
   // Give hands their slots, in a level that began with nothing, once there is something to hold.
   #reserveHands() {
-    const { count } = this.hands, { particle, spring, breakable } = this.counts, names = Array.from({ length: count },
+    const { count } = this.hands, { particle, spring } = this.counts, names = Array.from({ length: count },
       (_, hand) => `+hand.${hand}`);
-    const then = { ...this.counts, particle: particle + count, spring: spring + count, hand: count };
-    this.#grow(Object.assign(then, { breakable: breakable ? then.spring : 0 }));
-    this.counts = then;
-    this.#name({ particle: names, spring: names });
+    this.#addRows({ particle: count, spring: count, hand: count }, { particle: names, spring: names });
     this.#call('reserve', this.#block, particle, spring);
     this.#hold({ particle, spring, count });
     this.#derive(DERIVATIONS);
@@ -589,11 +596,4 @@ export class World {
       iterations, warm_start: warm, wind: [windX, windY], drag,
     };
   }
-}
-
-/** Write numbers into an array that holds such, from a place on.
- * @type {(array: AnyArray, values: AnyArray, at?: number) => void} */
-function put(array, values, at = 0) {
-  // Both are of 64 bits and whole, or neither is.
-  /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
 }

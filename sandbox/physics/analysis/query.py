@@ -128,6 +128,27 @@ def springs_crossing(state: World | Snapshot, start: Point, end: Point) -> Slots
 
 
 @_far_away
+def shares_crossed(state: World | Snapshot, springs: Slots, start: Point, end: Point) -> Floats:
+    """Where the line from start to end [m] crosses springs (k,), as a share (k,) of each from its first end.
+
+    -1: nowhere. What lies on the line lies to the left of it, so that of two springs in a row the line crosses one.
+    """
+    p, q = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    one = doubled_areas(p, q, state.position[state.particle_a[springs]])
+    other = doubled_areas(p, q, state.position[state.particle_b[springs]])
+    return np.divide(one, one - other, out=np.full(len(springs), -1.0), where=(one >= 0.0) != (other >= 0.0))
+
+
+@_far_away
+def in_triangles(state: World | Snapshot) -> NDArray[np.bool_]:
+    """Which springs (m,) act within a body that keeps areas of triangles, which a cut parts along its line."""
+    chosen = state.constraint_active & (state.constraint_kind == AREA) & (state.constraint_corners == 3)
+    owners = np.unique(state.owner[state.corner_particle[state.constraint_first[chosen]]])
+    one, other = state.owner[state.particle_a], state.owner[state.particle_b]
+    return shown_springs(state) & (one == other) & np.isin(one, owners)
+
+
+@_far_away
 def strain(state: World | Snapshot) -> Floats:
     """Signed strain (l - L) / L of every spring (m,): above 0 stretched; 0 where inactive or of rest length 0."""
     length = lengths(state.position[state.particle_b] - state.position[state.particle_a])

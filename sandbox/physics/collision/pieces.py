@@ -68,8 +68,8 @@ def part(
     for p in range(work.torn.shape[0]):
         work.torn[p] = -1
     for k in range(springs.shape[0]):
-        _mark_torn(state, state.particle_a[springs[k]], work.torn)
-        _mark_torn(state, state.particle_b[springs[k]], work.torn)
+        mark_torn(state, state.particle_a[springs[k]], work.torn)
+        mark_torn(state, state.particle_b[springs[k]], work.torn)
     _find_soft(state, work)
     _find_whole(state, good, start, listed, work)
     while _cut_articulation(state, work.torn, work.beside, gone, work.articulation):
@@ -80,8 +80,8 @@ def part(
 
 
 @inner_kernel
-def _mark_torn(state: State, end: int, torn: Slots) -> None:
-    # Mark the particles of the body of one.
+def mark_torn(state: State, end: int, torn: Slots) -> None:
+    """Mark the particles of the body of one by the first of them (n,), where they are not marked yet."""
     if torn[end] >= 0:
         return
     first = -1
@@ -258,7 +258,7 @@ def _find_parts(state: State, point: int, torn: Slots, work: ArticulationScratch
         if point not in (state.particle_a[s], state.particle_b[s]) and _holds(state, s, torn):
             join(label, state.particle_a[s], state.particle_b[s])
     for k in range(state.constraint_kind.shape[0]):
-        if _is_whole_triangle(state, k):
+        if is_whole_triangle(state, k):
             first, has_point, other = state.constraint_first[k], False, -1
             for c in range(first, first + TRIANGLE_CORNERS):
                 has_point = has_point or state.corner_particle[c] == point
@@ -294,7 +294,7 @@ def _is_triangle(state: State, k: int) -> bool:
 
 
 @inner_kernel
-def _is_whole_triangle(state: State, k: int) -> bool:
+def is_whole_triangle(state: State, k: int) -> bool:
     """Whether a constraint is the area of a triangle, and acts."""
     return state.constraint_active[k] and _is_triangle(state, k)
 
@@ -345,7 +345,7 @@ def _find_sides(state: State, torn: Slots, start: Slots, listed: Slots, beside: 
         beside[s] = 0
     for k in range(state.constraint_kind.shape[0]):
         corner = state.constraint_first[k]
-        if _is_whole_triangle(state, k) and torn[state.corner_particle[corner]] >= 0:
+        if is_whole_triangle(state, k) and torn[state.corner_particle[corner]] >= 0:
             is_left = state.constraint_rest[k, 1] > 0.0
             for c in range(TRIANGLE_CORNERS):
                 p = state.corner_particle[corner + c]

@@ -30,6 +30,7 @@ from sandbox.physics.commands.changes import (
     shake,
     unpin,
 )
+from sandbox.physics.commands.cutting import ASKED, ROWS_MISSING, cut_along
 from sandbox.physics.components import list_body
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.marks import BANK_UNOPENED, LONGEST_RAMP
@@ -76,8 +77,8 @@ REASONS = 64
 (
     BAD, FORBIDDEN, UNTOUCHABLE, EXHAUSTED, HOLDS, HOLDS_NOTHING, TOO_PINNED, PINNED, NOT_PINNED, NOTHING_THERE,
     NOTHING_MOVES, TOO_FAR, TOO_HEAVY, NOTHING_TO_FREE, BODY_PINNED, NO_FREE_PLACE,
-    UNSAID, NO_FIRMNESS, FLAT, BEYOND_REACH,
-) = range(2, 22)  # fmt: skip
+    UNSAID, NO_FIRMNESS, FLAT, BEYOND_REACH, NO_ROWS, TOO_MANY,
+) = range(2, 24)  # fmt: skip
 MOST_ITERATIONS = 1000
 _SOLVER_COUNT, _MOST_SUBSTEPS = len(SOLVER_NAMES), SUBSTEPS[-1]
 # Who gives a command.
@@ -165,6 +166,11 @@ def _first_bad(world: Commanded, kind: int, slots: Slots, numbers: Floats) -> in
         return place
     for k in range(numbers.shape[0]):
         if not -math.inf < numbers[k] < math.inf:
+            return slots.shape[0] + k
+    if kind == CUT and numbers.shape[0] not in (ASKED, slots.shape[0] + ASKED):
+        return slots.shape[0]
+    for k in range(numbers.shape[0] - ASKED if kind == CUT else 0):
+        if not 0.0 <= numbers[k] <= 1.0:
             return slots.shape[0] + k
     if kind == SET_COEFFICIENTS and slots[0] != 0 and not 0 <= slots[1] < slots[5]:
         return 1
@@ -316,8 +322,11 @@ def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers:
     elif kind in (CUT, BREAK, PART):
         begin(arena)
         work = new_tuple(CutScratch, arena, particles=state.owner.shape[0], springs=state.law.shape[0])
-        if is_full(arena):
-            return NO_ARENA
+        missing = NO_ARENA if is_full(arena) else 0
+        if missing == 0 and kind == CUT and numbers.shape[0] > ASKED:
+            missing = cut_along(state, good, slots, numbers, arena)
+        if missing != 0:
+            return NO_ARENA if missing < 0 else _refused(NO_ROWS if missing == ROWS_MISSING else TOO_MANY, 0)
         cut(state, good, slots, kind, work)
     elif kind == SET_COEFFICIENTS:
         set_coefficients(state, good, slots, numbers)

@@ -9,6 +9,7 @@ from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats
 from sandbox.physics.commands import command
 from sandbox.physics.commands.command import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
+from sandbox.physics.commands.cutting import ASKED
 from sandbox.physics.keeping.arguments import (
     CONSTRAINTS,
     FARTHEST,
@@ -17,6 +18,7 @@ from sandbox.physics.keeping.arguments import (
     PARTICLES,
     PARTS,
     SPRINGS,
+    listed,
     no_slot,
     number,
     point,
@@ -26,7 +28,7 @@ from sandbox.physics.keeping.arguments import (
     whole_from,
     whole_numbers,
 )
-from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
+from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS, MOST_PARTICLES, MOST_SPRINGS
 from sandbox.physics.settings import AUTO, SOLVER_NAMES
 from sandbox.physics.state import StateArrays
 
@@ -51,6 +53,9 @@ WORDS = {
     command.NO_FIRMNESS: "{}: its form is not stiff without pins, so it has no firmness",
     command.FLAT: "{}: it has no height along gravity to sag by; say its frequency in Hz",
     command.BEYOND_REACH: "{}: {} is out of reach at {} ticks a second; the nearest is {}{}",
+    command.NO_ROWS: "there are no rows for the pieces of {}",
+    command.TOO_MANY: f"there is no room for the pieces: a world holds at most {MOST_PARTICLES:,} particles and "
+    f"{MOST_SPRINGS:,} springs",
     command.TOO_HEAVY: f"{{}}: a mass is from {LEAST_MASS:g} to {MOST_MASS:g} kg",
 }
 # What has to be derived again after a command: nothing, what follows from hands, what follows from topology, all of it
@@ -76,10 +81,13 @@ _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
 _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "substeps", "?warm_start", "duration")
 # Numbers that a kernel writes, and how many they are: by what the host is to multiply kept impulses of contacts; the
-# nearest firmness that can be had.
-ANSWERS = {"contacts": 1, "nearest": 2}
+# nearest firmness that can be had; rows of particles, springs, constraints and corners that a cut needs, or is given.
+ANSWERS = {"contacts": 1, "nearest": 2, "rows": ASKED}
 # What a world says itself of every command, if nobody else does.
 _OF_WORLD = {"first_cursor", "first_spring", "tick_rate", "materials", "duration"}
+UNEQUAL = "at of {} springs: {} are cut"
+# What somebody may leave out.
+_MAY_LACK = {"at"}
 # Slots that are true or false.
 _FLAGS = frozenset({"down", "at_rest", "whole"})
 # Numbers that are pairs; ranges of others, where they have any, and of values.
@@ -99,7 +107,7 @@ KINDS = {
     "release": KernelCommand(command.RELEASE, _HAND, (), OF_HANDS),
     "pin": KernelCommand(command.PIN, _PARTICLE, (), OF_TOPOLOGY),
     "unpin": KernelCommand(command.UNPIN, _PARTICLE, (), OF_TOPOLOGY),
-    "cut_springs": KernelCommand(command.CUT, ("springs",), (), OF_TOPOLOGY),
+    "cut_springs": KernelCommand(command.CUT, ("springs",), ("at", "rows"), OF_TOPOLOGY),
     "break_springs": KernelCommand(command.BREAK, ("springs",), (), OF_TOPOLOGY),
     "part_bodies": KernelCommand(command.PART, ("springs",), (), OF_TOPOLOGY),
     "set_coefficients": KernelCommand(
@@ -200,6 +208,7 @@ def check_fields(name: str, giver: int, values: Mapping[str, Any]) -> None:
     if not isinstance(name, str) or name not in KINDS:
         raise ValueError(f"name {shown(name)}: there is no such command; there are {', '.join(KINDS)}")
     needed = {each.lstrip("?") for each in (*KINDS[name].slots, *KINDS[name].numbers)} - ANSWERS.keys() - _OF_WORLD
+    needed -= _MAY_LACK
     if missing := sorted(needed - values.keys()):
         raise ValueError(f"{', '.join(missing)}: {name} needs a value")
 
@@ -213,7 +222,12 @@ def numbers_of(name: str, values: Mapping[str, Any]) -> Floats:
 def _checked(kind: KernelCommand, name: str, values: Mapping[str, Any]) -> tuple[float, ...]:
     """The checked numbers of a field of a command; none if it is left out. Raises ValueError."""
     if name in ANSWERS:
-        return (0.0,) * ANSWERS[name]
+        return tuple(values.get(name, (0.0,) * ANSWERS[name]))
+    if name == "at":
+        shares = tuple(number("at", each, 0.0, 1.0) for each in listed("at", values.get("at", ())))
+        if len(shares) not in (0, len(values["springs"])):
+            raise ValueError(UNEQUAL.format(len(shares), len(values["springs"])))
+        return shares
     value = values[name]
     if value is None and f"?{name}" in kind.slots:
         return (0.0,)

@@ -21,6 +21,7 @@ from sandbox.physics.driving import Actuators, drives_of
 from sandbox.physics.jit import bundle
 from sandbox.physics.joints.joint_set import wheels_of
 from sandbox.physics.keeping.arguments import FARTHEST
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.kits.kit_kernels import (
     BAD_PLACE,
     HEADER,
@@ -38,7 +39,7 @@ from sandbox.physics.kits.kit_kernels import (
 from sandbox.physics.marks import ALL_GROUPS, LAW_HOOKE, SOLID_RIGHT
 from sandbox.physics.state import BY_NAME, FINITE, NOT_NEGATIVE, ROLLING_RESISTANCE, SHARE, Family, Range
 from sandbox.physics.water.displacers import HULL_NUMBERS, Water
-from sandbox.physics.world import World, grow
+from sandbox.physics.world import World
 
 FAR = 2**53
 

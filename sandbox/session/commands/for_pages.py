@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from sandbox.physics.commands.command_table import UNEQUAL
 from sandbox.physics.softness.firmness import BUT_RIGID
 from sandbox.session.commands.command import COMMAND_TYPES, Command, adapter
 from sandbox.session.commands.faults import NO_COMMAND, NO_NAME, NO_SLOT, UNKNOWN, WORDS, digits
@@ -14,7 +15,7 @@ _CHECKED = ("type", "names", "noun", "maxItems", "enum", *_LIMITS)
 def table_of(names: set[str]) -> dict[str, Any]:
     """The words of faults, and every command by its type: of those named its fields, else nothing."""
     words = WORDS | {"noCommand": NO_COMMAND, "unknown": UNKNOWN, "noName": NO_NAME, "noSlot": NO_SLOT}
-    words["butRigid"] = BUT_RIGID
+    words |= {"butRigid": BUT_RIGID, "unequal": UNEQUAL}
     commands = {name: _entry(kind) if name in names else None for name, kind in COMMAND_TYPES.items()}
     return {"messages": words, "commands": commands}
 

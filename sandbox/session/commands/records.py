@@ -34,7 +34,7 @@ def to_record(command: Command, world: World) -> dict[str, Any]:
     record: dict[str, Any] = {"type": command.type}
     named = namespaces(type(command))
     for field, value in asdict(command).items():  # type: ignore[call-overload]
-        if value is None:
+        if value is None or (value == () and field not in named):
             continue
         if field in named:
             names = named[field].names(world)

@@ -39,13 +39,14 @@ from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.reading.files import file_of, level_data, run_with
 from sandbox.physics.keeping.arguments import check_corners, check_whole_numbers, room_of
 from sandbox.physics.keeping.equipment import Equipment
+from sandbox.physics.keeping.growing import grow
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED, COLUMNS, FAMILIES, OF_RULES, Column, Family
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.terrain import NO_TERRAIN
-from sandbox.physics.world import World, WorldSettings, grow
+from sandbox.physics.world import World, WorldSettings
 from sandbox.session.replay import FORMAT
 from sandbox.version import __version__
 

@@ -22,6 +22,7 @@ from sandbox.app.draw.things.level_slots import (
     LevelSlots,
     Piece,
     Seen,
+    grown_slots,
     hull_of,
     joined_slots,
     level_slots_of,
@@ -136,8 +137,9 @@ class Drawables:
         if look.skin == CLOTH or look.skin in CRATES:
             for piece in filling.pieces:
                 self.sheets.add(actor, piece.left, piece.loops, there)
-        bare = there & ~filling.inside
-        return self._add_lines(actor, bare) if bare.any() else []
+        own = actor.own or actor
+        bare = (there & ~filling.inside)[: len(own.springs)]
+        return self._add_lines(own, bare) if bare.any() else []
 
     def _skin(self, actor: Actor, pieces: list[Piece]) -> tuple[list[Shape], list[DrawnFace]]:
         look = actor.look
@@ -265,6 +267,7 @@ class KeptDrawables:
         key = shown_particles(state), shown_springs(state), state.inverse_mass == 0.0
         is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
         if self.drawables is None or not is_same:
+            slots = grown_slots(slots, state)
             self.drawables, self._key = Drawables(slots, state, *key[:2], whole_triangles(state)), key
         return self.drawables
 

@@ -119,6 +119,7 @@ class Filling(NamedTuple):
 class Actor:
     """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot.
 
+    own: the body without what cuts have added, None: nothing; added (k, 2): places of that when the body was made [m].
     It keeps what takes long to find, since all bodies are gone through again where one is torn or another is added.
     """
 
@@ -128,6 +129,8 @@ class Actor:
     slots: Slots
     springs: Slots
     pairs: Slots
+    own: "Actor | None" = None
+    added: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     _filling: Filling | None = field(default=None, init=False)
     _cached: tuple[bytes, Any] | None = field(default=None, init=False)
     _spot: tuple[Floats, float] | None = field(default=None, init=False)
@@ -160,7 +163,27 @@ class Actor:
     @cached_property
     def form(self) -> Floats:
         """Places (n, 2) [m] of its particles about their middle, as it was made."""
-        return np.asarray(self.made.form - self.made.form.mean(axis=0))
+        return np.concatenate([self.made.form, self.added]) - self.made.form.mean(axis=0)
+
+    @property
+    def local_form(self) -> Floats:
+        """Places (n, 2) [m] of its particles as its description has them."""
+        local = self.made.local_form[0]
+        return np.concatenate([local, self.added - self.made.form[:1] + local[:1]])
+
+    def grown(self, state: Snapshot, split: Slots) -> "Actor":
+        """The body with what cuts have added: springs (k,) are those of them that are there, of any body."""
+        ends = np.stack([state.particle_a[split], state.particle_b[split]], axis=1).astype(np.int64)
+        is_own = np.isin(ends, np.r_[self.slots, np.flatnonzero(np.isin(state.split_from, self.slots))]).all(axis=1)
+        if not is_own.any():
+            return self
+        ends, springs = ends[is_own], split[is_own]
+        slots = np.r_[self.slots, np.setdiff1d(ends, self.slots)]
+        order = np.argsort(slots, kind="stable")
+        pairs = order[np.searchsorted(slots[order], ends)]
+        added = state.origin[slots[len(self.slots) :]]
+        springs, pairs = np.r_[self.springs, springs], np.concatenate([self.pairs, pairs])
+        return replace(self, slots=slots, springs=springs, pairs=pairs, own=self, added=added)
 
     def filling(self, there: Mask, whole: Slots | None = None) -> Filling:
         """The rest of the body's filling, where these springs (m,) are there.
@@ -314,6 +337,19 @@ def joined_slots(level_slots: LevelSlots, joined: Sequence[Joined]) -> LevelSlot
     return replace(
         level_slots, actors=actors, joins=joins, particles=np.concatenate(particles), springs=np.concatenate(springs)
     )
+
+
+def grown_slots(level_slots: LevelSlots, state: Snapshot) -> LevelSlots:
+    """The cast of a level with what cuts have added to its bodies."""
+    split = np.flatnonzero(state.is_split & state.spring_active)
+    if not len(split):
+        return level_slots
+    actors = [actor.grown(state, split) if actor.is_filled else actor for actor in level_slots.actors]
+    particles, springs = (
+        np.unique(np.concatenate([getattr(level_slots, name), *(getattr(actor, each) for actor in actors)]))
+        for name, each in (("particles", "slots"), ("springs", "springs"))
+    )
+    return replace(level_slots, actors=actors, particles=particles, springs=springs)
 
 
 def keys_of(pairs: Slots) -> Slots:

@@ -294,7 +294,7 @@ class Sheets:
         """Add a body of which triangles (t, 3) of indices are left, inside loops of slots."""
         look, spacing = actor.look, float(actor.body.__dict__.get("spacing", actor.cell))
         is_cloth = look.skin == "cloth"
-        form = actor.made.local_form[0]
+        form = actor.local_form
         angle = float(actor.body.__dict__.get("angle", 0.0))
         cosine, sine = np.cos(angle), np.sin(angle)
         local = np.stack([form[:, 0] * cosine + form[:, 1] * sine, form[:, 1] * cosine - form[:, 0] * sine], axis=1)

@@ -17,13 +17,14 @@ from sandbox.physics.arena import (
     is_full,
     lay_out,
     mark,
+    new_flags,
     new_float_rows,
     new_floats,
     new_slot_rows,
     new_slots,
     new_tuple,
 )
-from sandbox.physics.arrays import Floats, SlotRows, Slots, empty, with_empty
+from sandbox.physics.arrays import Flags, Floats, SlotRows, Slots, empty, with_empty
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_springs
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
@@ -70,14 +71,17 @@ class FormModes(NamedTuple):
 class Pieces(NamedTuple):
     """The pieces of a body: which piece each point (n,), spring (m,) and constraint (k,) is of, -1: of none.
 
-    slot (n,): particle of each point. total (1,): pieces.
+    slot: particle of each point, and behind those the particles that cuts have added. owner: of each piece. total (1,):
+    pieces. is_split (1,): whether a cut has added anything to the body, which is no row of its form.
     """
 
     point: Annotated[Slots, "points"]
     spring: Annotated[Slots, "springs"]
     constraint: Annotated[Slots, "constraints"]
-    slot: Annotated[Slots, "points"]
+    slot: Annotated[Slots, "members"]
+    owner: Annotated[Slots, "members"]
     total: Annotated[Slots, "1"]
+    is_split: Annotated[Flags, "1"]
 
 
 class Owners(NamedTuple):
@@ -132,14 +136,25 @@ def _new_pieces(state: State, forms: Forms, body: int, arena: Arena) -> Pieces:
     # The pieces of a body as it is now.
     points, springs = _rows_of(forms, body, POINTS), _rows_of(forms, body, SPRINGS)
     constraints = _rows_of(forms, body, CONSTRAINTS)
-    made = new_tuple(Pieces, arena, points=points, springs=springs, constraints=constraints)
+    is_own = new_flags(arena, state.owner.shape[0])
+    first, members = forms.first[body, SPRINGS], points
+    if not is_full(arena):
+        for row in range(first, first + springs):
+            is_own[state.particle_a[forms.spring[row]]] = is_own[state.particle_b[forms.spring[row]]] = True
+        for p in range(state.owner.shape[0]):
+            members += int(_is_added_to(state, is_own, p))
+    made = new_tuple(Pieces, arena, points=points, springs=springs, constraints=constraints, members=members)
     scratch = mark(arena)
-    owners = new_tuple(Owners, arena, points=points)
+    owners = new_tuple(Owners, arena, points=members)
     if is_full(arena):
         return made
     made.total[0] = 1
-    first = forms.first[body, SPRINGS]
+    made.is_split[0] = members > points
     is_cut = False
+    for p in range(state.owner.shape[0]):
+        if _is_added_to(state, is_own, p):
+            members -= 1
+            made.slot[members] = p
     for row in range(first, first + springs):
         s = forms.spring[row]
         made.slot[forms.shapes.pairs[row, 0]] = state.particle_a[s]
@@ -148,11 +163,20 @@ def _new_pieces(state: State, forms: Forms, body: int, arena: Arena) -> Pieces:
     if is_cut:
         count = _list_owners(state, made.slot, owners)
         pieces = _number_pieces(state, forms, body, count, owners)
-        if pieces > 1:
+        if pieces > 1 or (pieces == 1 and made.is_split[0]):
             made.total[0] = pieces
+            for at in range(count):
+                if owners.piece[at] >= 0:
+                    made.owner[owners.piece[at]] = owners.owner[at]
             _part(state, forms, body, count, owners, made)
     give_back(arena, scratch)
     return made
+
+
+@inner_kernel
+def _is_added_to(state: State, is_own: Flags, p: int) -> bool:
+    # Whether a cut has added a particle to a body.
+    return 0 <= state.split_from[p] < is_own.shape[0] and is_own[state.split_from[p]]
 
 
 @inner_kernel
@@ -174,9 +198,9 @@ def _list_owners(state: State, slot: Slots, owners: Owners) -> int:
 @inner_kernel
 def _number_pieces(state: State, forms: Forms, body: int, count: int, owners: Owners) -> int:
     # Owners that keep an area are pieces, those of more points first, then by owner; how many.
-    for row in range(forms.first[body, CONSTRAINTS], forms.first[body + 1, CONSTRAINTS]):
-        k = forms.constraint[row]
-        if state.constraint_active[k] and state.constraint_kind[k] == AREA:
+    for k in range(state.constraint_kind.shape[0] if forms.first[body, POINTS] < forms.first[body + 1, POINTS] else 0):
+        is_area = state.constraint_kind[k] == AREA and state.constraint_corners[k] == CORNERS
+        if state.constraint_active[k] and is_area:
             at = _place_of(state, state.corner_particle[state.constraint_first[k]], owners, count)
             if at >= 0:
                 owners.piece[at] = 0
@@ -242,17 +266,29 @@ def _whole(forms: Forms, body: int) -> FormPiece:
 
 @inner_kernel
 def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Pieces, arena: Arena) -> FormPiece:
-    # A piece of a body that was cut.
-    whole = _whole(forms, body)
+    # A piece of a body that was cut: what of its rows is of it, and behind that what cuts have added.
+    whole, owner = _whole(forms, body), pieces.owner[number]
+    index, is_listed = new_slots(arena, state.owner.shape[0]), new_flags(arena, state.constraint_kind.shape[0])
+    if is_full(arena):
+        return whole
     points, springs, areas, bends = 0, 0, 0, 0
     for i in range(pieces.point.shape[0]):
+        index[pieces.slot[i]] = -1
         points += int(pieces.point[i] == number)
     for row in range(pieces.spring.shape[0]):
         springs += int(pieces.spring[row] == number)
     for row in range(pieces.constraint.shape[0]):
+        is_listed[whole.constraint[row]] = True
         if pieces.constraint[row] == number:
             is_area = state.constraint_kind[whole.constraint[row]] == AREA
             areas, bends = areas + int(is_area), bends + int(not is_area)
+    if pieces.is_split[0]:
+        for p in range(state.owner.shape[0]):
+            points += int(index[p] == 0 and state.particle_active[p] and state.owner[p] == owner)
+        for s in range(state.law.shape[0]):
+            springs += int(_is_added(state, s, owner))
+        for k in range(state.constraint_kind.shape[0]):
+            areas += int(not is_listed[k] and _is_area_of(state, k, owner))
     made = FormPiece(
         StiffForm(
             new_float_rows(arena, points, 2), new_floats(arena, points), new_slot_rows(arena, springs, 2),
@@ -260,27 +296,79 @@ def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Piece
         ),
         new_slots(arena, springs), new_slots(arena, areas + bends),
     )  # fmt: skip
-    index = new_slots(arena, state.owner.shape[0])
     if not is_full(arena):
+        _fill_points(state, whole, number, pieces, index, made.form)
         _fill_piece(state, whole, number, pieces, index, made)
+        if pieces.is_split[0]:
+            _fill_added(state, owner, index, is_listed, made)
     return made
 
 
 @inner_kernel
-def _fill_piece(state: State, whole: FormPiece, number: int, pieces: Pieces, index: Slots, made: FormPiece) -> None:
-    # index: scratch, by particle.
-    form, count = made.form, 0
+def _is_added(state: State, s: int, owner: int) -> bool:
+    a, b = state.owner[state.particle_a[s]], state.owner[state.particle_b[s]]
+    return state.is_split[s] and state.spring_active[s] and a == owner and b == owner
+
+
+@inner_kernel
+def _is_area_of(state: State, k: int, owner: int) -> bool:
+    if state.constraint_kind[k] != AREA or state.constraint_corners[k] != CORNERS or not state.constraint_active[k]:
+        return False
+    return state.owner[state.corner_particle[state.constraint_first[k]]] == owner
+
+
+@inner_kernel
+def _fill_points(state: State, whole: FormPiece, number: int, pieces: Pieces, index: Slots, form: StiffForm) -> None:
+    # index: by particle, -1 of those of the body; 1 + the number of its point from then on.
+    count = 0
     for i in range(pieces.point.shape[0]):
         if pieces.point[i] == number:
-            index[pieces.slot[i]] = count
+            index[pieces.slot[i]] = count + 1
             form.points[count, 0], form.points[count, 1] = whole.form.points[i, 0], whole.form.points[i, 1]
             form.mass[count] = whole.form.mass[i]
             count += 1
-    count = 0
+    for p in range(state.owner.shape[0] if pieces.is_split[0] else 0):
+        if index[p] == 0 and state.particle_active[p] and state.owner[p] == pieces.owner[number]:
+            count += 1
+            index[p] = count
+    # What a cut has moved is where the corners of areas are at rest, and as heavy as it is now.
+    for k in range(state.constraint_kind.shape[0] if pieces.is_split[0] else 0):
+        if _is_area_of(state, k, pieces.owner[number]):
+            for c in range(state.constraint_first[k], state.constraint_first[k] + CORNERS):
+                at = index[state.corner_particle[c]] - 1
+                form.points[at, 0], form.points[at, 1] = state.corner_form[c, 0], state.corner_form[c, 1]
+                form.mass[at] = state.mass[state.corner_particle[c]]
+
+
+@inner_kernel
+def _fill_added(state: State, owner: int, index: Slots, is_listed: Flags, made: FormPiece) -> None:
+    springs, areas = made.spring.shape[0], made.form.areas.shape[0]
+    for back in range(state.law.shape[0]):
+        s = state.law.shape[0] - 1 - back
+        if _is_added(state, s, owner):
+            springs -= 1
+            made.spring[springs] = s
+            made.form.pairs[springs, 0] = index[state.particle_a[s]] - 1
+            made.form.pairs[springs, 1] = index[state.particle_b[s]] - 1
+    last = made.constraint.shape[0]
+    for back in range(state.constraint_kind.shape[0]):
+        k = state.constraint_kind.shape[0] - 1 - back
+        if not is_listed[k] and _is_area_of(state, k, owner):
+            areas -= 1
+            last -= 1
+            made.constraint[last] = k
+            for i in range(CORNERS):
+                made.form.areas[areas, i] = index[state.corner_particle[state.constraint_first[k] + i]] - 1
+
+
+@inner_kernel
+def _fill_piece(state: State, whole: FormPiece, number: int, pieces: Pieces, index: Slots, made: FormPiece) -> None:
+    # index: 1 + the point of each particle.
+    form, count = made.form, 0
     for row in range(pieces.spring.shape[0]):
         if pieces.spring[row] == number:
             s = whole.spring[row]
-            form.pairs[count, 0], form.pairs[count, 1] = index[state.particle_a[s]], index[state.particle_b[s]]
+            form.pairs[count, 0], form.pairs[count, 1] = index[state.particle_a[s]] - 1, index[state.particle_b[s]] - 1
             made.spring[count] = s
             count += 1
     areas, bends = 0, 0
@@ -291,7 +379,7 @@ def _fill_piece(state: State, whole: FormPiece, number: int, pieces: Pieces, ind
         made.constraint[areas + bends] = k
         is_area = state.constraint_kind[k] == AREA
         for i in range(CORNERS):
-            corner = index[state.corner_particle[state.constraint_first[k] + i]]
+            corner = index[state.corner_particle[state.constraint_first[k] + i]] - 1
             if is_area:
                 form.areas[areas, i] = corner
             else:
@@ -373,10 +461,13 @@ def firm(
         pieces = _new_pieces(state, forms, b, arena)
         if is_full(arena):
             return NO_ROOM
-        if pieces.total[0] > 1:
+        if pieces.total[0] > 1 or pieces.is_split[0]:
             _follow(pieces, forms, b, modes)
             piece = _new_piece(state, forms, b, number, pieces, arena)
             kept, at = modes.piece, forms.first[b, POINTS] + number
+            if pieces.is_split[0]:
+                # What a cut has added is kept nowhere.
+                kept, at = new_floats(arena, 1), 0
             if is_full(arena):
                 return NO_ROOM
     mode = _mode_of(piece.form, kept, at, arena)
@@ -430,6 +521,9 @@ def number_of_spring(state: State, forms: Forms, arena: Arena, spring: int) -> i
         for row in range(pieces.spring.shape[0]):
             if forms.spring[first + row] == spring and pieces.spring[row] >= 0:
                 return body if pieces.spring[row] == 0 else after + pieces.spring[row] - 1
+        for number in range(pieces.total[0] if pieces.is_split[0] else 0):
+            if 0 <= spring < state.law.shape[0] and _is_added(state, spring, pieces.owner[number]):
+                return body if number == 0 else after + number - 1
         after += pieces.total[0] - 1
         give_back(arena, scratch)
     return -1
