@@ -15,7 +15,7 @@ HEAD = """
 import math
 from typing import NamedTuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
-from sandbox.physics.jit import Bundle, unpack, inner_kernel, kernel, set_field
+from sandbox.physics.jit import Bundle, unpack, inner_kernel, kernel, parallel, set_field
 
 LIMIT = 3
 SHARE = 0.1
@@ -158,6 +158,21 @@ def test_arrays_of_a_named_tuple_have_the_lengths_that_stand_beside_them(transla
     ):
         with pytest.raises(Untranslatable, match=re.escape(why)):
             translated(LAID_OUT.replace("GIVEN", wrong))
+
+
+def test_a_parallel_loop_hands_its_items_to_one_call(translated):
+    text = translated("""
+        @inner_kernel
+        def one(k: int, values: Floats) -> None:
+            values[k] = 1.0
+
+        @kernel
+        def all_of(values: Floats) -> None:
+            for k in parallel(values.shape[0], 8 * values.shape[0]):
+                one(k, values)
+        """)
+    assert "parallel(values.shape[0], 8 * values.shape[0], [&](const int64_t k) {" in text
+    assert "one(k, values);" in text
 
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "kernels.md").read_text(encoding="utf-8")
