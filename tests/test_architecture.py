@@ -18,7 +18,7 @@ PACKAGE = ROOT / "sandbox"
 # What users import: modules that only pass names on. They stand above the rooms that they take those from.
 PUBLIC = ("commands", "replay", "bodies")
 ROOMS = (
-    "version", "physics", "level", "bring", "export", "session", "page", *PUBLIC, "tools", "editor", "app", "testing",
+    "version", "processors", "physics", "level", "bring", "export", "session", "page", *PUBLIC, "tools", "editor", "app", "testing",
     "terminal", "cli", "__main__",
 )  # fmt: skip
 # Rooms of the window, from the ground up.
@@ -39,6 +39,7 @@ LIBRARIES = {
     "tools": {"numpy"},
     "editor": {"numpy", "pydantic", "platformdirs", "filelock"},
     "testing": {"numpy", "pytest"},
+    "processors": set(),
     "terminal": {"tqdm"},
     "cli": set(),
     "__main__": set(),

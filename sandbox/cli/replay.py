@@ -90,7 +90,9 @@ def verify_files(options: ReplayOptions) -> int:
     if options.report:
         from sandbox.session.player.report import write_report
 
-        tell([write_report(failures, len(names), options.report)])
+        line = write_report(failures, len(names), options.report)
+        # What is printed beside it may be read by programs.
+        tell([line]) if options.json else print(line)
     if options.github:
         from sandbox.session.player.github import tell_github
 

@@ -92,7 +92,7 @@ def test_the_command_line_writes_the_same_page_of_a_folder(failing, capsys) -> N
     write_level(with_value(rope_level(), *EDITS[1]), failing / "rope.json")
     command = ["replay", ".", "--against", "rope.json", "--processes", "2", "--report", "report.html"]
     assert main(command) == 2
-    assert capsys.readouterr().err.endswith("report.html: 6 of 6 tests failed\n")
+    assert capsys.readouterr().out.endswith("report.html: 6 of 6 tests failed\n")
     text = (failing / "report.html").read_text(encoding="utf-8")
     causes, commands = told(text)
     assert len(causes) == 6 and sum("materials.steel.stiffness: 0.8 -&gt; 0.6" in cause for cause in causes) == 5
