@@ -10,6 +10,7 @@ from typing import Any
 
 from sandbox.cli import (
     bisect,
+    board,
     bring,
     check,
     diff,
@@ -42,7 +43,7 @@ from sandbox.version import __version__
 COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     module.COMMAND
     for module in (
-        play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, link,
+        play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, board, link,
         open_link, take_home, export, bring, format, edit, schema,
     )
 )  # fmt: skip
