@@ -58,7 +58,7 @@ def closed(data: Any) -> str:
 
 def answering(**changes: Any) -> Level:
     """A level that is won while nobody does anything."""
-    return rules_level.answering(name="Answering", **changes)
+    return rules_level.answering(**{"name": "Answering", "hands": {"may": []}} | changes)
 
 
 @pytest.fixture(scope="module")
