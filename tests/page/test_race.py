@@ -140,7 +140,7 @@ def test_names_are_text_and_a_row_leads_to_its_run_and_its_race(browser: Browser
         pass
     with served(site) as at:
         for level, name in ((LEVEL, EVIL[:60]), ("squeeze", EVIL[60:])):
-            tab = browser.tab().open(f"{at}ranks/{level}.html")
+            tab = browser.tab().show(f"{at}ranks/{level}.html")
             assert text(tab, "#ranks bdi") == name.strip()
             assert tab.evaluate("document.images.length + document.scripts.length") == 1
             watched, raced = tab.evaluate("[...document.querySelectorAll('#ranks a')].map(({ href }) => href)")
