@@ -136,8 +136,10 @@ def _goals(level: Level, world: World) -> dict[str, Any]:
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
     counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
     stars = {rule: words for rule in range(len(level.rules)) if (words := star_words(level, rule))}
-    measure = asdict(measure_of(level))
-    return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars, "measure": measure}
+    return {
+        "goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars,
+        "measure": asdict(measure_of(level)),
+    }  # fmt: skip
 
 
 def _check(check: CheckDef, world: World) -> dict[str, Any]:

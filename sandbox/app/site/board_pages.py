@@ -1,4 +1,4 @@
-"""Board pages: a site whose levels lead to the ranks of those that win them; each run there plays, races and is sent."""
+"""Board pages: a site whose levels lead to the ranks of runs that win them, each to watch, to race and to send on."""
 
 import html
 from collections.abc import Iterator

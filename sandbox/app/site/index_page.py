@@ -144,7 +144,8 @@ def _section(
 def _card(each: SiteLevel, state: Snapshot, words: str, opened: str) -> str:
     seen = Camera(viewport=(0, 0, *SIZE)).picture_of(crop_of(each.level, state))
     return (
-        f'<li><a href="{opened}/{each.address}.html" data-toy="{each.toy}" data-view="{_numbers(seen)}">{_picture(each, "data-")}'
+        f'<li><a href="{opened}/{each.address}.html" data-toy="{each.toy}" data-view="{_numbers(seen)}">'
+        f"{_picture(each, 'data-')}"
         f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p></a></li>"
     )
 
