@@ -26,12 +26,11 @@ FILE_LIMIT, NAME_LIMIT = 2**20, 60
 
 @dataclass(frozen=True)
 class BoardEntry:
-    """A link or a recording of a folder; place: its file, of a link with the line; run: the link, None: the file."""
+    """A link or a recording; place: its file, of a link with the line; run: the link, None: the file itself."""
 
     place: str
     name: str
     run: str | None
-    path: Path
 
 
 @dataclass(frozen=True)
@@ -69,7 +68,8 @@ class Board:
                     self._add(path)
                 except LevelError as error:
                     self.faults.append(error.faults[0])
-        self.entries = [entry for path in self._files(folder) for entry in self._entries(path)]
+        paths = [path for path in self._files(folder) if path.suffix != LEVELS]
+        self.entries = [entry for path in paths for entry in self._entries(path)]
         self.wins: list[Win] = []
         self._seen: dict[tuple[str, int, str | None], str] = {}
 
@@ -90,37 +90,22 @@ class Board:
         paths = sorted(path for path in folder.rglob("*") if not path.is_dir() or path.is_symlink())
         return [path for path in paths if not any(part.startswith(".") for part in path.relative_to(folder).parts)]
 
-    def _entries(self, path: Path) -> Iterator[BoardEntry]:
-        if path.suffix == LEVELS:
-            return
-        if path.is_symlink() or not path.is_file():
-            self.faults.append(f"{path}: is no regular file")
-        elif is_recording(path):
-            yield BoardEntry(str(path), path.name.partition(".")[0], None, path)
-        elif path.suffix == LINKS:
-            yield from self._linked(path)
-        else:
-            self.faults.append(f"{path}: is neither a recording, nor a level, nor a {LINKS} of links")
-
-    def _linked(self, path: Path) -> Iterator[BoardEntry]:
-        """The entries of a file of links, a line each: a name, which may be left out, and a link."""
+    def _entries(self, path: Path) -> list[BoardEntry]:
+        """The entries of a file: of one of links a line each, with a name, which may be left out."""
         try:
-            with open(path, "rb") as file:
-                data = file.read(FILE_LIMIT + 1)
-            if len(data) > FILE_LIMIT:
-                raise ValueError(f"is larger than {FILE_LIMIT // 2**20} MiB")
-            lines = data.decode().splitlines()
-        except UnicodeDecodeError:
-            self.faults.append(f"{path}: is no text in UTF-8")
-        except ValueError as error:
-            self.faults.append(f"{path}: {error}")
-        except OSError as error:
-            self.faults.append(f"{path}: cannot be read: {refusal_of(error)}")
-        else:
-            for number, line in enumerate(lines, 1):
-                *name, link = line.split() or [""]
-                if link:
-                    yield BoardEntry(f"{path}:{number}", " ".join(name) or path.stem, link, path)
+            if path.is_symlink() or not path.is_file():
+                raise ValueError("is no regular file")
+            if is_recording(path):
+                return [BoardEntry(str(path), path.name.partition(".")[0], None)]
+            if path.suffix != LINKS or path.stat().st_size > FILE_LIMIT:
+                raise ValueError(f"is neither a recording, nor a level, nor a {LINKS} of links up to 1 MiB")
+            lines = [(number, line.split()) for number, line in enumerate(path.read_text("utf-8").splitlines(), 1)]
+        except (OSError, ValueError) as error:
+            said = "is no text in UTF-8" if isinstance(error, UnicodeDecodeError) else str(error)
+            self.faults.append(f"{path}: {refusal_of(error) if isinstance(error, OSError) else said}")
+            return []
+        named = [(number, words[-1], " ".join(words[:-1])) for number, words in lines if words]
+        return [BoardEntry(f"{path}:{number}", name or path.stem, link) for number, link, name in named]
 
     def judge(self, entry: BoardEntry) -> None:
         """Run an entry, and note that it wins, or why it does not enter."""
@@ -142,7 +127,7 @@ class Board:
             raise ReplayError(f"its name is longer than {NAME_LIMIT} characters, or has some that nobody sees")
         if entry.run is not None and not is_link(entry.run):
             raise ReplayError("is no link to a run: it has no #scene=")
-        replay = read_replay(entry.path) if entry.run is None else replay_of(entry.run)
+        replay = read_replay(entry.place) if entry.run is None else replay_of(entry.run)
         stem = self._stems.get(level_digest(level_data(replay.level)))
         if stem is None:
             is_edited = any(level.name == replay.level.name for level in self.levels.values())
