@@ -301,7 +301,7 @@ def test_no_forged_entry_enters(kind, count, honest, tmp_path):
 def test_the_solution_of_a_puzzle_enters_as_a_recording_and_the_same_run_as_a_link_is_one_with_it(name, tmp_path):
     solution = solution_of(Path(level_path(name)))
     (tmp_path / "first.replay.gz").write_bytes(solution.read_bytes())
-    (tmp_path / "second.txt").write_text(f"Ada {fragment_of(read_replay(solution))}\n", encoding="utf-8")
+    (tmp_path / "second.txt").write_text(f"Ada #beat=Bob&{fragment_of(read_replay(solution))}\n", encoding="utf-8")
     board = judged(tmp_path)
     (win,) = board.wins
     assert (win.stem, win.entry.name, win.stars) == (name, "first", 3)
