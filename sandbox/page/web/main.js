@@ -91,7 +91,7 @@ class Page {
     // Words that leave little of the level wait behind their button.
     if (byId('room').offsetHeight < innerHeight * LEAST) this.#show('hints', 'hint');
     // A page of a disk has no address that others could open.
-    for (const id of ['link', 'end-send', 'end-beat']) byId(id).hidden = !location.protocol.startsWith('http');
+    if (!location.protocol.startsWith('http')) for (const id of ['link', 'end-send', 'end-beat']) byId(id).remove();
     byId('picture').focus({ preventScroll: true });
   }
 
