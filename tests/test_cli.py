@@ -397,8 +397,8 @@ COMMANDS = {
     "resume": ["x.jsonl"], "show": ["x.jsonl"],
     "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"], "shrink": ["x.jsonl"],
     "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"],
-    "page": ["rope", "-o", "x.html"], "site": ["rope", "-o", "x"], "link": ["x.jsonl"], "open": ["#scene=A"],
-    "take-home": ["rope"], "feel": ["girder"],
+    "page": ["rope", "-o", "x.html"], "site": ["rope", "-o", "x"], "board": ["x"], "link": ["x.jsonl"],
+    "open": ["#scene=A"], "take-home": ["rope"], "feel": ["girder"],
     "export": ["rope", "-o", "x.json"], "bring": ["x.svg", "-o", "x.json"], "format": ["x.json"],
     "edit": [], "schema": [],
 }  # fmt: skip

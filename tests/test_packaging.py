@@ -16,6 +16,8 @@ from tests.page.packed import unpacked
 
 ROOT = Path(__file__).resolve().parents[1]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+# One for a repository of somebody else.
+BOARD = ROOT / "docs" / "sharing" / "board.yml"
 
 
 def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folder(tmp_path):
@@ -86,7 +88,7 @@ def steps_of(workflow):
     return [step for job in workflow["jobs"].values() for step in job.get("steps", ())]
 
 
-@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [*WORKFLOWS, BOARD], ids=lambda path: path.name)
 def test_a_workflow_names_only_targets_of_make_and_files_that_exist(path):
     workflow = yaml.safe_load(path.read_text(encoding="utf-8"))
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
@@ -109,9 +111,19 @@ def test_only_tests_run_by_themselves_and_each_other_workflow_is_in_the_guide_fo
 
 
 def test_only_what_publishes_may_write_and_only_to_where_it_publishes():
-    allowed = {"site": {"pages", "id-token"}, "release": {"id-token"}}
-    for path in WORKFLOWS:
+    allowed = {"site": {"pages", "id-token"}, "release": {"id-token"}, "board": {"pages", "id-token", "pull-requests"}}
+    for path in [*WORKFLOWS, BOARD]:
         workflow = yaml.safe_load(path.read_text(encoding="utf-8"))
         given = [workflow["permissions"], *(job.get("permissions", {}) for job in workflow["jobs"].values())]
         writing = {name for each in given for name, right in each.items() if right == "write"}
         assert writing == allowed.get(path.stem, set()), path.name
+
+
+def test_the_workflow_of_a_board_waits_for_an_owner_and_no_job_that_reads_entries_of_others_may_write():
+    workflow = yaml.safe_load(BOARD.read_text(encoding="utf-8"))
+    assert set(workflow[True]) == {"workflow_dispatch"}
+    for job in workflow["jobs"].values():
+        steps = "\n".join(step.get("run", "") + str(step.get("with", "")) for step in job["steps"])
+        if "refs/pull" in steps:
+            assert "permissions" not in job and "sandbox board pull/entries" in steps
+    assert workflow["permissions"] == {"contents": "read"}

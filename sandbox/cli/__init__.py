@@ -10,6 +10,7 @@ from typing import Any
 
 from sandbox.cli import (
     bisect,
+    board,
     bring,
     check,
     diff,
@@ -19,7 +20,6 @@ from sandbox.cli import (
     format,
     info,
     link,
-    open_link,
     page,
     play,
     render,
@@ -40,12 +40,10 @@ from sandbox.terminal import give_up_output, missing_folder, prepare_streams, re
 from sandbox.version import __version__
 
 # In the order in which --help lists them.
-COMMANDS: tuple[Subcommand[Any], ...] = tuple(
-    module.COMMAND
-    for module in (
-        play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, link,
-        open_link, take_home, feel, export, bring, format, edit, schema,
-    )
+COMMANDS: tuple[Subcommand[Any], ...] = (
+    *(module.COMMAND for module in (play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep)),
+    *(module.COMMAND for module in (render, page, site, board, link)), link.OPEN,
+    *(module.COMMAND for module in (take_home, feel, export, bring, format, edit, schema)),
 )  # fmt: skip
 # Values of options that begin as numbers below zero do, such as -1,-1,1,1.
 _BELOW_ZERO = re.compile(r"-(\d|\.\d|inf)")

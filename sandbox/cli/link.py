@@ -1,9 +1,10 @@
-"""`sandbox link`."""
+"""`sandbox link` and `sandbox open`."""
 
 from dataclasses import dataclass
 
-from sandbox.cli.base.command import Subcommand, argument, option_or
+from sandbox.cli.base.command import Subcommand, WindowOptions, argument, option_or
 from sandbox.cli.base.inputs import EXIT_OK, Refused, recording_of
+from sandbox.cli.play import PlayOptions, play
 from sandbox.terminal import seconds
 
 
@@ -34,3 +35,25 @@ def link(options: LinkOptions) -> int:
 
 
 COMMAND = Subcommand("link", "print a link that holds a recorded run, for replay and play", LinkOptions, link)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpenOptions(WindowOptions):
+    """Options of `open-link`: the link, and how to open it."""
+
+    link: str = argument(str, "LINK", "a link to a run, with or without the address before its #")
+
+
+def open_link(options: OpenOptions) -> int:
+    """Open the app with the run of a link. Raises Refused."""
+    from sandbox.session.replay.link import is_link
+
+    if not is_link(options.link):
+        raise Refused(
+            f"{options.link[:60]}: is no link to a run; it has no #scene=. sandbox play opens files and levels"
+        )
+    settings = {name: getattr(options, name) for name in WindowOptions.__dataclass_fields__}
+    return play(PlayOptions(level=options.link, profile=False, seconds=None, **settings))
+
+
+OPEN = Subcommand("open", "open the app with the run of a link", OpenOptions, open_link)

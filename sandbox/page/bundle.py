@@ -28,6 +28,7 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 # What pages begin with that have an address of the bundle; one that holds all it needs begins by itself.
 _BEGIN = """export { load } from './files.js';
 export { list } from './index.js';
+export { ranked } from './sending.js';
 export { start };
 import { start, unpack } from './main.js';
 if ('unpacked' in globalThis) start(unpack);

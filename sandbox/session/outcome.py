@@ -70,6 +70,31 @@ def stars_of(stars: StarsDef | None, level: Level, state: World | Snapshot, tick
     return 1 + sum(value >= bound if is_least else value <= bound for bound in (stars.second, stars.third))
 
 
+@dataclass(frozen=True)
+class StarMeasure:
+    """What a level's stars are earned by: a counter with its text, None: the time; is_most: whether more is better."""
+
+    counter: int | None
+    text: str
+    is_most: bool
+
+
+def measure_of(level: Level) -> StarMeasure:
+    """The measure of the first rule that wins with stars of its own; without any: the time, of which less is better."""
+    wins = (action.stars for rule in level.rules for action in rule.then if action.win is not None and action.stars)
+    stars = next(wins, None)
+    if stars is None or stars.counter is None:
+        return StarMeasure(None, "", stars is not None and stars.third > stars.second)
+    named = {counter.id: counter.text or counter.id for counter in level.counters}
+    row = level.counter_names.index(stars.counter)
+    return StarMeasure(row, named.get(stars.counter, stars.counter), stars.third > stars.second)
+
+
+def measured(measure: StarMeasure, state: World | Snapshot, tick: int) -> float:
+    """The value of a measure for a win at the end of a tick, in the state then: of the counter, or the tick."""
+    return float(tick if measure.counter is None else state.counter[measure.counter])
+
+
 def star_words(level: Level, rule: int) -> tuple[str, ...]:
     """What the second and the third star of a rule that wins take, in words; () where every win has all."""
     action = _ending(level, rule)

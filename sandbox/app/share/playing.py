@@ -44,7 +44,7 @@ from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands import Command
 from sandbox.session.commands.records import ScriptLine, to_record
-from sandbox.session.outcome import star_words
+from sandbox.session.outcome import measure_of, star_words
 from sandbox.session.replay.format import header, seal
 from sandbox.session.replay.link import level_record
 from sandbox.session.replay.recording import ReplayError
@@ -145,7 +145,10 @@ def _goals(level: Level, world: World) -> dict[str, Any]:
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
     counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
     stars = {rule: words for rule in range(len(run_rules(level))) if (words := star_words(level, rule))}
-    return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars}
+    return {
+        "goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules), "stars": stars,
+        "measure": asdict(measure_of(level)),
+    }  # fmt: skip
 
 
 def _solved(level: Level, file: Path) -> Generator[float, None, dict[str, str] | None]:

@@ -73,12 +73,13 @@ class SiteLevel:
 class IndexPage:
     """What the list of levels says beside them; links: addresses of other pages of the site by what they are called.
 
-    address: absolute, where the site will be; None: unknown.
+    address: absolute, where the site will be; None: unknown. opened: the folder of the pages that levels lead to.
     """
 
     title: str
     links: Mapping[str, str]
     address: str | None
+    opened: str = LEVELS
 
 
 def index_text(levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], page: IndexPage) -> str:
@@ -95,7 +96,7 @@ def index_text(levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], 
         SHOWN=link_card(page.title, WORDS, "", hero.card_picture, page.address),
         PRELOADS=_preloads(hero),
         HERO=_hero(hero, states[hero.stem], words[hero.stem]),
-        LEVELS="".join(_section(each, levels, states, words) for each in sections),
+        LEVELS="".join(_section(each, levels, states, words, page.opened) for each in sections),
         DOCUMENTS=link.format(link_list(page.links)) if page.links else "",
     )  # fmt: skip
 
@@ -133,16 +134,18 @@ def _hero(each: SiteLevel, state: Snapshot, words: str) -> str:
 
 
 def _section(
-    section: GallerySection, levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], words: Mapping[str, str]
-) -> str:
-    cards = "".join(_card(levels[stem], states[stem], words[stem]) for stem in section.levels if stem in levels)
+    section: GallerySection, levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], words: Mapping[str, str],
+    opened: str,
+) -> str:  # fmt: skip
+    cards = "".join(_card(levels[stem], states[stem], words[stem], opened) for stem in section.levels if stem in levels)
     return f"<section><h2>{section.title}</h2><p>{section.line}</p><ul class=cards>{cards}</ul></section>\n"
 
 
-def _card(each: SiteLevel, state: Snapshot, words: str) -> str:
+def _card(each: SiteLevel, state: Snapshot, words: str, opened: str) -> str:
     seen = Camera(viewport=(0, 0, *SIZE)).picture_of(crop_of(each.level, state))
     return (
-        f'<li><a href="{each.page}" data-toy="{each.toy}" data-view="{_numbers(seen)}">{_picture(each, "data-")}'
+        f'<li><a href="{opened}/{each.address}.html" data-toy="{each.toy}" data-view="{_numbers(seen)}">'
+        f"{_picture(each, 'data-')}"
         f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p></a></li>"
     )
 

@@ -35,7 +35,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
     return {
         "RECORDING": _of(format, "TICK_DIGITS", "ARRAY_DIGITS", "STATE_TICKS")
         | {"CHAIN_DIGITS": format.CHAIN_DIGITS[format.VERSION]},
-        "LINK": _of(link, "MARK", "VERSION", "LONGEST", "UNPACKED_LIMIT", "RUN_LIMIT", "COMMAND_LIMIT")
+        "LINK": _of(link, "MARK", "BEAT", "VERSION", "LONGEST", "UNPACKED_LIMIT", "RUN_LIMIT", "COMMAND_LIMIT")
         | _of(link, "FARTHEST", "PER_METRE", "HANDS", "MOVE"),
         "CHECKS": _of(checks, "STILL") | _of(summary, "STRAIN_WINDOW"),
         "TUNING": {"KINDS": [each.type for each in tuning.TUNING], "SUBJECTS": tuning.SUBJECTS},

@@ -1,5 +1,5 @@
 // Cursor: keys in place of a pointer. It goes from thing to thing, or where arrows take it, and uses the tool there.
-/** @import { Camera } from './draw.js' */
+/** @import { Camera } from './camera.js' */
 /** @import { Run } from './run.js' */
 /** @import { Point, Pressed, Theme } from './types.js' */
 

@@ -1,4 +1,5 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
+import { Camera } from './camera.js';
 import { ball, boxOf, canvasOf, castShadow, clamp, contextOf, disc, drawBar, drawMuscle, drawTurf, fillParts,
   fillSkin, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, partsOf, pathOf, radial, stroke,
 } from './paint.js';
@@ -22,54 +23,9 @@ const PERIODS = LINES.PERIOD;
 const { FLUSH_FROM, FLUSH_RANGE, LEAST_FLUSH } = STRAIN;
 /** @type {Record<string, [rim: string, tone: string]>} */
 const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
+// How much of a shade is seen.
+const SHADE = 0.33;
 const INK = '#2a1030', DARK = '#161b26', LARGEST_PIN = 0.1;
-
-// The place in the middle of the picture [m], pixels to a metre, and the size of the picture [pixels].
-/** Which parts of width and height a box takes that is shown as large as it goes.
- * @type {Point} */
-export const FIT = [0.92, 0.88];
-// Which part of the height that is left is above a box.
-const LOW = 0.7;
-
-export class Camera {
-  x = 0;
-  y = 0;
-  zoom = 50;
-  width = 1;
-  height = 1;
-
-  /** Show a box [m] as large as it goes in a part of the picture that nothing covers [pixels]; null: in all of it, with
-   * room around it. Where height is left it stands low: more of the sky is seen than of the ground.
-   * @type {(box: Box, room: Box | null) => void} */
-  fit([left, low, right, high], room) {
-    const beside = (this.width * (1 - FIT[0])) / 2, above = (this.height * (1 - FIT[1])) / 2;
-    const [first, top, last, bottom] = room ?? [beside, above, this.width - beside, this.height - above];
-    const wide = Math.max(right - left, 0.5), tall = Math.max(high - low, 0.5);
-    this.zoom = Math.max(Math.min((last - first) / wide, (bottom - top) / tall), 0.5);
-    const share = room ? LOW : 0.5, spare = bottom - top - tall * this.zoom;
-    this.x = (left + right) / 2 - ((first + last - this.width) / 2) / this.zoom;
-    this.y = (low + high) / 2 + (top + share * spare + (tall * this.zoom) / 2 - this.height / 2) / this.zoom;
-  }
-
-  /** @type {(x: number, y: number) => Point} */
-  toWorld(x, y) {
-    return [this.x + (x - this.width / 2) / this.zoom, this.y - (y - this.height / 2) / this.zoom];
-  }
-
-  /** @type {(x: number, y: number) => Point} */
-  toPixels(x, y) {
-    return [this.width / 2 + (x - this.x) * this.zoom, this.height / 2 - (y - this.y) * this.zoom];
-  }
-
-  /** @type {(x: number, y: number, factor: number) => void} */
-  zoomAbout(x, y, factor) {
-    const [heldX, heldY] = this.toWorld(x, y);
-    this.zoom = clamp(this.zoom * factor, 0.5, 20000);
-    const [nowX, nowY] = this.toWorld(x, y);
-    this.x += heldX - nowX;
-    this.y += heldY - nowY;
-  }
-}
 
 export class Picture {
   #canvas;
@@ -117,11 +73,11 @@ export class Picture {
     return this.#world.view(`state.${name}`);
   }
 
-  /** previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
-   * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) => void} */
-  draw(camera, theme, previous, part, seconds) {
-    const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, this.sharpest);
-    const context = this.#context, canvas = this.#canvas;
+  /** Lay out everything as it is at a time; what there is, and the size of the picture [pixels].
+   * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) =>
+   *   [things: Things, size: [number, number]]} */
+  #laid(camera, theme, previous, part, seconds) {
+    const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, this.sharpest), canvas = this.#canvas;
     /** @type {[number, number]} */
     const size = [Math.round(width * ratio), Math.round(height * ratio)];
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
@@ -135,15 +91,38 @@ export class Picture {
       this.#scene = unfolded(this.#whole, this.#world);
       things = this.#things = thingsOf(this.#scene, this.#world, this.#there[0], this.#there[1]);
     }
-    const { shapes } = things;
-    shapes.forEach((shape) => {
-      this.#trace(shape);
-      makeSkin(shape, width, height);
-    });
+    things.shapes.forEach((shape) => this.#trace(shape));
     things.lines.forEach((line) => this.#follow(line));
+    return [things, size];
+  }
+
+  /** Draw only where things are, in one colour, over what is drawn.
+   * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) => void} */
+  shade(camera, theme, previous, part, seconds) {
+    const [things, size] = this.#laid(camera, theme, previous, part, seconds), layer = this.#backdrop;
+    // Which clears it.
+    [layer.canvas.width, layer.canvas.height] = size;
+    layer.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    layer.fillStyle = theme.accent;
+    layer.lineCap = layer.lineJoin = 'round';
+    this.#fillAll(layer, things, theme.accent);
+    this.#context.globalAlpha = SHADE;
+    this.#context.drawImage(layer.canvas, 0, 0, camera.width, camera.height);
+    this.#context.globalAlpha = 1;
+  }
+
+  /** previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1; behind: draws what is
+   * behind things.
+   * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number, behind?: () => void) =>
+   *   void} */
+  draw(camera, theme, previous, part, seconds, behind = () => {}) {
+    const [things, size] = this.#laid(camera, theme, previous, part, seconds), { shapes } = things;
+    const context = this.#context, { ratio, scale } = this;
+    shapes.forEach((shape) => makeSkin(shape, camera.width, camera.height));
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.#backdropNow(size), 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    behind();
     this.#drawTreads(true);
     this.#castShadows(things);
     things.working.forEach((spring) => this.#drawWorking(spring));
@@ -284,16 +263,20 @@ export class Picture {
   }
 
   /** @type {(things: Things) => void} */
-  #castShadows({ shapes, sheets, lines: bars, working }) {
-    const { theme: { shadow }, scale } = this;
-    castShadow(this.#context, this.camera, this.theme, scale, (context) => {
-      shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
-      sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
-        context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
-      bars.forEach((bar) => stroke(context, bar.path, shadow, bar.half + (bar.particles ? 0 : 1)));
-      working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * scale));
-      this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, shadow));
-    });
+  #castShadows(things) {
+    const { theme, scale } = this;
+    castShadow(this.#context, this.camera, theme, scale, (context) => this.#fillAll(context, things, theme.shadow));
+  }
+
+  /** Fill all that is there with a colour, which the context fills with already.
+   * @type {(context: CanvasRenderingContext2D, things: Things, colour: string) => void} */
+  #fillAll(context, { shapes, sheets, lines: bars, working }, colour) {
+    shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
+    sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
+      context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
+    bars.forEach((bar) => stroke(context, bar.path, colour, bar.half + (bar.particles ? 0 : 1)));
+    working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), colour, 3 * this.scale));
+    this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, colour));
   }
 
   /** Stage and ground, kept while the camera stands still.

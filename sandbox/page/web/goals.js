@@ -1,6 +1,7 @@
 // Goals: what a level asks of who plays it, its counters and clock, and a card where it is won or lost.
 import { element } from './panel.js';
 import { TUNING } from './shared.js';
+/** @import { Race } from './race.js' */
 /** @import { Toy } from './toy.js' */
 /** @import { Goals as Told } from './types.js' */
 
@@ -20,6 +21,8 @@ const number = new Intl.NumberFormat('en', { maximumFractionDigits: 2 });
 export class Goals {
   #shown = '';
   #isAsSent = false;
+  /** @type {Race | null} */
+  race = null;
 
   /** told: what there is to show, see playing.py; nothing of it is shown where a level asks nothing.
    * @param {Toy} toy @param {Told} told @param {Places} places */
@@ -99,7 +102,7 @@ export class Goals {
     this.#title();
     const seconds = `${(outcome.tick / toy.rate).toFixed(2)} s`;
     const next = outcome.isWon ? this.told.stars[outcome.rule]?.[outcome.stars - 1] : undefined;
-    const lines = [outcome.text, [seconds, ...this.#counted()].join(', '), next].filter(Boolean);
+    const lines = [this.race?.said(outcome), outcome.text, [seconds, ...this.#counted()].join(', '), next].filter(Boolean);
     end.querySelector('p')?.replaceChildren(...lines.flatMap((line, k) => [k ? element('br') : '', line ?? '']));
     const earned = end.querySelector('div');
     earned?.replaceChildren(...stars(outcome.stars));
@@ -107,7 +110,7 @@ export class Goals {
     earned?.toggleAttribute('hidden', !outcome.isWon);
     end.classList.toggle('lost', !outcome.isWon);
     // Who has lost is not sent on.
-    for (const link of end.querySelectorAll('a')) link.hidden = !outcome.isWon;
+    for (const link of end.querySelectorAll('a, #end-beat')) link.toggleAttribute('hidden', !outcome.isWon);
     this.places.was.hidden = !toy.run.commands.some(({ record }) => record && TUNING.KINDS.includes(record.type));
     end.hidden = false;
     this.places.again.focus({ preventScroll: true });

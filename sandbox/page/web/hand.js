@@ -3,7 +3,7 @@
 import { Cursor, CURSOR_POINTER, thingOf } from './cursor.js';
 import { HANDS } from './shared.js';
 import { Stroke } from './stroke.js';
-/** @import { Camera } from './draw.js' */
+/** @import { Camera } from './camera.js' */
 /** @import { Maker } from './maker.js' */
 /** @import { Run } from './run.js' */
 /** @import { Command, HandEvents, Point, Pressed, Theme } from './types.js' */

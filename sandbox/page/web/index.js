@@ -1,5 +1,5 @@
 // Index: the list of levels: the toy at its top, which plays by itself, and previews of levels.
-import { FIT } from './draw.js';
+import { FIT } from './camera.js';
 import { load } from './files.js';
 import { Toy } from './toy.js';
 /** @import { Point } from './types.js' */

@@ -6,8 +6,8 @@ import { packed } from './recording.js';
 import { LINK } from './shared.js';
 /** @import { Done, LevelLink, NamedRecord, PackedLink, Recording } from './types.js' */
 
-const { MARK, VERSION, LONGEST, UNPACKED_LIMIT, RUN_LIMIT, COMMAND_LIMIT, FARTHEST, PER_METRE, HANDS, MOVE } = LINK;
-const COLUMNS = 4, ENTRY = 3, FIELDS = ['v', 'physics', 'level', 'digest', 'ticks', 'at', 'hash', 'commands'];
+const { MARK, BEAT, VERSION, LONGEST, UNPACKED_LIMIT, RUN_LIMIT, COMMAND_LIMIT, FARTHEST, PER_METRE, HANDS, MOVE } = LINK;
+const COLUMNS = 4, ENTRY = 3, MOST_NAME = 60, FIELDS = ['v', 'physics', 'level', 'digest', 'ticks', 'at', 'hash', 'commands'];
 const BROKEN = 'This link is broken: copy it again, whole.';
 
 /** @typedef {{ places: Map<number, [number, number]>, gestures: Map<number, number> }} Held */
@@ -31,7 +31,23 @@ export class Elsewhere extends Refusal {
 
 /** Whether the fragment of an address holds a run.
  * @type {(fragment: string) => boolean} */
-export const isLink = (fragment) => fragment.startsWith(`#${MARK}`);
+export const isLink = (fragment) => new RegExp(`^#(${BEAT}[^&]*&)?${MARK}`).test(fragment);
+
+/** Whose run a link wants to be raced; null: it is to be watched.
+ * @type {(fragment: string) => string | null} */
+export function rivalOf(fragment) {
+  if (!fragment.startsWith(`#${BEAT}`)) return null;
+  let name = '';
+  try {
+    // What nobody sees may turn round what is beside it.
+    name = decodeURIComponent(fragment.slice(BEAT.length + 1).split('&')[0]).replace(/\p{C}/gu, '').slice(0, MOST_NAME).trim();
+  } catch { /* It is no name. */ }
+  return name || 'Somebody';
+}
+
+/** A link by which a run is to be raced.
+ * @type {(fragment: string) => string} */
+export const raced = (fragment) => `#${BEAT}&${fragment.slice(1)}`;
 
 /** The fragment of a link to a run; null: it would be too long. commands: with names in place of slots.
  * @type {(level: LevelLink, run: { commands: Entry[], ticks: number, at: number, hash: string }) =>
@@ -84,7 +100,7 @@ function moved({ type, grab, target, ...more }, gesture, { gestures }) {
 /** What a fragment holds. Throws a Refusal.
  * @type {(fragment: string) => Promise<PackedLink>} */
 async function unpacked(fragment) {
-  const letters = fragment.slice(MARK.length + 1);
+  const letters = fragment.slice(fragment.indexOf(MARK) + MARK.length);
   if (letters.length > LONGEST) throw new Refusal('This link is too long.');
   try {
     const text = atob(letters.replace(/-/g, '+').replace(/_/g, '/'));

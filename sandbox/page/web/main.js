@@ -6,21 +6,23 @@ import { Engineers } from './engineers.js';
 import { Lost, read } from './files.js';
 import { Goals, starText } from './goals.js';
 import { Keys } from './keys.js';
-import { Elsewhere, isLink, linked } from './link.js';
+import { Elsewhere, isLink, linked, raced, rivalOf } from './link.js';
 import { Menu } from './menu.js';
 import { Messages, RANKS } from './messages.js';
 import { element, Panel } from './panel.js';
+import { Race, resultOf } from './race.js';
 import { verified } from './recording.js';
 import { outcome } from './rules.js';
+import { copied, shared } from './sending.js';
 import { Toy } from './toy.js';
-/** @import { Droppable, Fresh, Level, Message, ToyEvents } from './types.js' */
+/** @import { Droppable, Fresh, Level, Message, Rival, ToyEvents } from './types.js' */
 
 // Slow motion; free room around a level [pixels].
 const SLOW = 0.2, BESIDE = 8;
 // The least part of the height that words leave to a level.
 const LEAST = 0.35;
 // Where what there is to do, and a panel, leave room for a level.
-const roomy = matchMedia('(min-width: 641px) and (min-height: 501px)'), byFinger = matchMedia('(hover: none)');
+const roomy = matchMedia('(min-width: 641px) and (min-height: 501px)');
 // What is said stands at these places.
 const PLACES = ['verdict', 'state', 'refused'];
 const TOOLS = ['drag', 'pin', 'cut', 'jelly', 'wood', 'steel', 'rope', 'spring', 'rod', 'erase'];
@@ -85,11 +87,12 @@ class Page {
       this.#say({ rank: 'tip', text: 'A recording. Touch it to take over.' });
       this.#verify();
     }
+    if (level.rival) this.#race(level.rival);
     if (said) this.#say(said);
     // Words that leave little of the level wait behind their button.
     if (byId('room').offsetHeight < innerHeight * LEAST) this.#show('hints', 'hint');
     // A page of a disk has no address that others could open.
-    for (const id of ['link', 'end-send']) byId(id).hidden = !location.protocol.startsWith('http');
+    if (!location.protocol.startsWith('http')) for (const id of ['link', 'end-send', 'end-beat']) byId(id).remove();
     byId('picture').focus({ preventScroll: true });
   }
 
@@ -137,7 +140,7 @@ class Page {
         press(byId('parts'), byId('makers').classList.toggle('parts'));
         this.#choose('drag');
       },
-      link: () => this.#copyLink(), 'end-send': () => this.#send(),
+      link: async () => this.#copy(await this.#linked()), 'end-send': () => this.#send(), 'end-beat': () => this.#send(raced),
       more: () => {
         press(byId('more'), byId('tools').classList.toggle('open'));
         byId('more').setAttribute('aria-expanded', String(byId('tools').classList.contains('open')));
@@ -312,38 +315,52 @@ class Page {
     }
   }
 
-  /** The address of this page with what was done, which it is from then on; null: that is too long.
-   * @type {() => Promise<string | null>} */
-  async #linked() {
+  /** Let a run that somebody sent go along, once it is known to win.
+   * @type {(rival: Rival) => Promise<void>} */
+  async #race(rival) {
+    const { toy } = this, bar = byId('verifying');
+    toy.pause();
+    bar.max = rival.recording.hashes.length - 1;
+    bar.hidden = false;
+    try {
+      this.goals.race = new Race(toy, rival, await resultOf(toy, rival, (done) => { bar.value = done; }));
+      this.#say({ rank: 'verdict', text: `Race ${rival.name}: the shade is their run.`, isGood: true });
+    } catch (error) {
+      this.#say({ rank: 'verdict', text: error instanceof Refusal ? error.message : 'No race: this run could not be compared.' });
+      if (!(error instanceof Refusal)) console.error(error);
+    }
+    bar.hidden = true;
+    toy.restart();
+  }
+
+  /** The address of this page with what was done, which it is from then on; null: that is too long. as: the fragment of a
+   * link in other words.
+   * @type {(as?: (fragment: string) => string) => Promise<string | null>} */
+  async #linked(as = (/** @type {string} */ plain) => plain) {
     const { gesture } = this.toy.run, fragment = await this.toy.link();
     if (fragment === null) {
       this.#say({ rank: 'refusal', text: 'This run is too long for a link: save it as a file, and send that.' });
       return null;
     }
     // Without a new page: it is the address of what is here.
-    history.replaceState(null, '', fragment);
+    history.replaceState(null, '', as(fragment));
     this.#kept = gesture;
     return location.href;
   }
 
-  async #copyLink() {
-    const address = await this.#linked();
+  /** @type {(address: string | null) => Promise<void>} */
+  async #copy(address) {
     if (address === null) return;
-    const isCopied = await navigator.clipboard?.writeText(address).then(() => true, () => false);
-    const length = address.length.toLocaleString('en');
+    const isCopied = await copied(address), length = address.length.toLocaleString('en');
     this.#say({ rank: 'done', text: isCopied ? `The link is copied, ${length} characters. Whoever opens it sees what you did.`
       : `The address of this page is the link now, ${length} characters: copy it from there.` });
   }
 
-  // To somebody, by what a device has for that; a link where it has nothing.
-  async #send() {
-    if (!navigator.share || !byFinger.matches) {
-      await this.#copyLink();
-      return;
-    }
-    const url = await this.#linked();
-    // Who thinks better of it is told nothing.
-    if (url !== null) await navigator.share({ title: document.title, url }).catch(() => {});
+  /** To somebody, by what a device has for that; a link where it has nothing.
+   * @type {(as?: (fragment: string) => string) => Promise<void>} */
+  async #send(as) {
+    const url = await this.#linked(as);
+    if (url === null || !await shared(document.title, url)) await this.#copy(url);
   }
 
   async #save() {
@@ -378,7 +395,9 @@ async function pageOf(stem) {
 async function follow(level) {
   if (!isLink(location.hash)) return null;
   try {
-    [level.recording, level.begin] = await linked(location.hash, level.link);
+    const [recording, begin] = await linked(location.hash, level.link), name = rivalOf(location.hash);
+    if (name === null) Object.assign(level, { recording, begin });
+    else level.rival = { name, recording };
     return null;
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;

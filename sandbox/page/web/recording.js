@@ -39,15 +39,16 @@ async function* repeated(world, commands, ticks, pausing = () => {}) {
 }
 
 /** Where a recording, carried out as by hand, is not what it says: the tick, and why its command may not be; '': its bits
- * are others. null: it is. progress: told of the ticks that are done, between slices.
- * @type {(world: World, recording: Recording, progress: (done: number) => void) => Promise<{ tick: number, words: string }
- *   | null>} */
-export async function verified(world, { commands, hashes, end }, progress) {
+ * are others. null: it is. progress: told of the ticks that are done, between slices; ticked: called at each of them.
+ * @type {(world: World, recording: Recording, progress: (done: number) => void, ticked?: () => void) => Promise<{
+ *   tick: number, words: string } | null>} */
+export async function verified(world, { commands, hashes, end }, progress, ticked = () => {}) {
   const ticks = repeated(world, commands.map((done) => ({ ...done })), hashes.length - 1, progress);
   try {
     while (!(await ticks.next()).done) {
       const hash = hashes[world.time];
       if (hash !== undefined && !world.hash().whole.startsWith(hash)) return { tick: world.time, words: '' };
+      ticked();
     }
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;

@@ -7,6 +7,7 @@ export const RECORDING = {
 };
 export const LINK = {
   MARK: 'scene=',
+  BEAT: 'beat=',
   VERSION: 2,
   LONGEST: 32000,
   UNPACKED_LIMIT: 4194304,

@@ -1,8 +1,9 @@
 // Toy: a level that plays on a canvas; and the handle by which a page of one's own plays, reads and listens.
+import { Camera } from './camera.js';
 import { Checks } from './checks.js';
 import { Refusal } from './commands.js';
 import { typed } from './cursor.js';
-import { Camera, Picture } from './draw.js';
+import { Picture } from './draw.js';
 import { Drives } from './drives.js';
 import { load } from './files.js';
 import { Hands } from './hand.js';
@@ -49,6 +50,9 @@ export class Toy extends EventTarget {
   isPaused = false;
   // Whether the machine is too slow for it of late.
   isBehind = false;
+  /** Draws what is seen behind everything.
+   * @type {((part: number, seconds: number) => void) | null} */
+  shade = null;
   // How fast time passes: 1 as in the world.
   speed = 1;
 
@@ -237,7 +241,8 @@ export class Toy extends EventTarget {
   #draw(seconds) {
     this.#isDirty = false;
     this.#follow(seconds);
-    this.picture.draw(this.camera, this.theme, this.#previous, this.isPaused ? 1 : this.#pace.part, seconds);
+    const part = this.isPaused ? 1 : this.#pace.part;
+    this.picture.draw(this.camera, this.theme, this.#previous, part, seconds, () => this.shade?.(part, seconds));
     this.hands.draw(contextOf(this.canvas), this.picture.at, this.theme);
     this.#tell('draw');
   }

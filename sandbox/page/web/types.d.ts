@@ -292,8 +292,16 @@ export interface Level {
   header: string;
   link: LevelLink;
   recording: Recording | null;
+  // Who is raced.
+  rival?: Rival;
   begin: number;
   about: About;
+}
+
+// A run that goes along, and whose it is.
+export interface Rival {
+  name: string;
+  recording: Recording;
 }
 
 // What a level asks, in a line; counters that are shown: place and name; whether time counts.
@@ -305,6 +313,8 @@ export interface Goals {
   stars: Record<number, string[]>;
   // The solution beside the level, and the fragment of a link to it.
   solved: { text: string, fragment: string } | null;
+  // What ranks wins of as many stars: a counter, null: the time; whether more is better.
+  measure: { counter: number | null; text: string; is_most: boolean };
 }
 
 // Gives a world of its own before the first tick.

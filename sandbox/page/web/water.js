@@ -1,7 +1,7 @@
 // Water: pools in front of what is in them, with waves and drops where something crosses the surface. Looks alone.
 import { clamp, disc, linesOf, mixed, pathOf, stroke } from './paint.js';
 import { WATER } from './shared.js';
-/** @import { Camera } from './draw.js' */
+/** @import { Camera } from './camera.js' */
 /** @import { Drop, LinePiece, Point, Pool, Scene, Tones } from './types.js' */
 /** @import { World } from './world.js' */
 

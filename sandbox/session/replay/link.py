@@ -30,8 +30,8 @@ from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 
 VERSION = 2
-# What comes before the packed run in a fragment.
-MARK = "scene="
+# What comes before the packed run in a fragment; and before that, with a name, where the run is to be raced.
+MARK, BEAT = "scene=", "beat="
 # A longer link is cut by programs that pass it on [characters]; a longer run goes into a file.
 LONGEST = 32_000
 # What a link may unpack to [bytes], and ticks of its run: an hour at 60 a second.
@@ -41,7 +41,7 @@ _DIGEST = 8
 # Whole numbers that a float is sure of are below this.
 _SAFE = 2**53
 
-_LINK = re.compile(rf"(?:^|#){MARK}(.*)$", re.DOTALL)
+_LINK = re.compile(rf"(?:^|#)(?:{BEAT}[^&#]*&)?{MARK}(.*)$", re.DOTALL)
 _NO_HASHES = TickHashes("", ("",) * len(BY_STORED))
 
 

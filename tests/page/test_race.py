@@ -1,0 +1,152 @@
+"""Boards in a browser: ranks with names as text, and a race by touch against a run that somebody sent."""
+
+from pathlib import Path
+from urllib.parse import quote
+
+import pytest
+
+from sandbox.app.site.board_pages import write_board
+from sandbox.level.reading.files import level_path, load_level
+from sandbox.session.board import Board
+from sandbox.session.checking import solution_of
+from sandbox.session.replay.link import fragment_of
+from sandbox.session.replay.reader import read_replay
+from tests.page.browser import Browser, Tab
+from tests.page.deeds import ByFinger
+from tests.page.opened import START_OVER, VERDICT
+from tests.page.pointing import text
+from tests.page.site_server import served
+from tests.page.test_winning import PHONE
+from tests.solutions import SOLUTIONS
+
+LEVEL = "chain_of_events"
+# How much later somebody begins than the run that is raced [ticks].
+LATE = 24
+EVIL = '<img src=x onerror="document.title=1"></bdi></table><script>document.title=1</script>@ROWS@{drag}&amp;\'"'
+
+
+def solution(level: str = LEVEL) -> str:
+    """A link to the run that wins a level."""
+    return fragment_of(read_replay(solution_of(Path(level_path(level)))))
+
+
+def judged(folder: Path) -> Board:
+    board = Board(folder)
+    for entry in board.entries:
+        board.judge(entry)
+    return board
+
+
+def race_of(name: str, link: str) -> str:
+    return f"#beat={quote(name, safe='')}&{link.removeprefix('#')}"
+
+
+def play(tab: Tab, late: int) -> None:
+    """Do by touch what the solution does, so many ticks later."""
+    player, rate = ByFinger(tab, []), tab.evaluate("page.toy.rate")
+    ((lines),) = SOLUTIONS[LEVEL]
+    for time, record in lines:
+        player.until(round(time * rate) + late)
+        player.do(record)
+    assert player.until(60 * rate) is not None
+
+
+@pytest.fixture(scope="module")
+def address(site):
+    with served(site) as at:
+        yield at
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("late", "words"), [(LATE, "Ada beats you by {}."), (-LATE, "You beat Ada by {}.")], ids=["slower", "faster"]
+)
+def test_a_race_by_touch_ends_on_a_card_that_says_who_wins_and_enters_the_board(
+    browser: Browser, address: str, tmp_path: Path, late: int, words: str
+) -> None:
+    tab = browser.tab(**PHONE).open(f"{address}levels/{LEVEL}.html{race_of('Ada', solution())}")
+    assert tab.evaluate(VERDICT) == "Race Ada: the shade is their run."
+    play(tab, late)
+    assert text(tab, "#end-card h2") == "Won"
+    card = text(tab, "#end-card p").splitlines()[0]
+    # Played by pointer events, and sent back.
+    made = tab.evaluate("page.toy.link()")
+    (tmp_path / "all.txt").write_text(f"Ada {solution()}\nBen {made}\n", encoding="utf-8")
+    board = judged(tmp_path)
+    assert board.faults == []
+    ranked, (ada, ben) = board.ranks(LEVEL), board.wins
+    assert [win.entry.name for win in ranked] == (["Ada", "Ben"] if late > 0 else ["Ben", "Ada"])
+    assert card == words.format(f"{abs(ada.ticks - ben.ticks) / load_level(LEVEL).settings.tick_rate:.2f} s")
+    assert tab.faults == []
+
+
+def test_the_shade_goes_along_with_time_and_is_seen(browser: Browser, address: str) -> None:
+    tab = browser.tab().open(f"{address}levels/{LEVEL}.html{race_of('Ada', solution())}")
+    tab.evaluate(VERDICT)
+    tab.evaluate(START_OVER)
+    tab.evaluate("for (let k = 0; k < 200; k++) page.toy.tick()")
+    drawn = """(() => {
+      const { toy } = page, { canvas } = toy, context = canvas.getContext('2d');
+      const shot = () => {
+        toy.picture.draw(toy.camera, toy.theme, toy.world.view('state.position'), 1, 0, () => toy.shade?.(1, 0));
+        return context.getImageData(0, 0, canvas.width, canvas.height).data;
+      };
+      const { shade } = toy, seen = shot();
+      toy.shade = null;
+      const plain = shot();
+      toy.shade = shade;
+      return seen.reduce((count, value, k) => count + (value !== plain[k]), 0);
+    })()"""
+    moved = tab.evaluate(drawn)
+    assert moved > 1000
+    # Here, before anybody does anything, both are in one place: what is seen of it is a rim.
+    tab.evaluate("page.toy.seek(20)")
+    assert tab.evaluate(drawn) < moved
+    tab.evaluate("page.toy.seek(200)")
+    assert tab.evaluate(drawn) == moved
+
+
+@pytest.mark.parametrize(
+    ("link", "words"),
+    [
+        (solution("crane"), "This link is to another level. Open it there."),
+        ("#scene=AAAA", "This link is broken: copy it again, whole."),
+    ],
+)
+def test_a_race_that_cannot_be_is_said_and_the_level_plays(
+    browser: Browser, address: str, link: str, words: str
+) -> None:
+    tab = browser.tab().open(f"{address}levels/{LEVEL}.html{race_of('Ada', link)}")
+    assert tab.evaluate(VERDICT) == words
+    assert tab.evaluate("page.toy.shade") is None
+
+
+def test_who_sends_a_run_that_does_not_win_is_not_raced(browser: Browser, address: str) -> None:
+    tab = browser.tab().open(f"{address}levels/{LEVEL}.html")
+    tab.evaluate("page.toy.pause(); for (let k = 0; k < 30; k++) page.toy.tick()")
+    link = tab.evaluate("page.toy.link()")
+    other = browser.tab().open(f"{address}levels/{LEVEL}.html{race_of('', link)}")
+    assert other.evaluate(VERDICT) == "No race: the run of this link does not win."
+    assert other.evaluate("page.toy.shade") is None and not other.evaluate("page.toy.isPaused")
+
+
+def test_names_are_text_and_a_row_leads_to_its_run_and_its_race(browser: Browser, tmp_path: Path) -> None:
+    entries, site = tmp_path / "entries", tmp_path / "site"
+    entries.mkdir()
+    (entries / "all.txt").write_text(f"{EVIL[:60]} {solution()}\n{EVIL[60:]} {solution('squeeze')}\n", encoding="utf-8")
+    board = judged(entries)
+    board.levels = {stem: level for stem, level in board.levels.items() if stem in (LEVEL, "squeeze")}
+    for _ in write_board(board, site, EVIL):
+        pass
+    with served(site) as at:
+        for level, name in ((LEVEL, EVIL[:60]), ("squeeze", EVIL[60:])):
+            tab = browser.tab().show(f"{at}ranks/{level}.html")
+            assert text(tab, "#ranks bdi") == name.strip()
+            assert tab.evaluate("document.images.length + document.scripts.length") == 1
+            watched, raced = tab.evaluate("[...document.querySelectorAll('#ranks a')].map(({ href }) => href)")
+            sent = tab.evaluate("new URL(document.querySelector('[data-race]').dataset.race, location.href).href")
+            assert sent == raced
+            assert tab.faults == []
+            other = browser.tab().open(raced)
+            assert other.evaluate(VERDICT) == f"Race {name.strip()}: the shade is their run."
+            assert str(browser.tab().open(watched).evaluate(VERDICT)).startswith("Verified: ")
