@@ -18,8 +18,8 @@ PACKAGE = ROOT / "sandbox"
 # What users import: modules that only pass names on. They stand above the rooms that they take those from.
 PUBLIC = ("commands", "replay", "bodies")
 ROOMS = (
-    "version", "processors", "physics", "level", "bring", "export", "session", "page", *PUBLIC, "tools", "editor", "app", "testing",
-    "terminal", "cli", "__main__",
+    "version", "processors", "physics", "level", "bring", "export", "session", "page", *PUBLIC, "tools", "editor",
+    "app", "testing", "terminal", "cli", "__main__",
 )  # fmt: skip
 # Rooms of the window, from the ground up.
 ROOMS_OF_APP = (

@@ -27,9 +27,9 @@ STORED = [
 # Those that are no part of a state where all of them are as usual.
 SPARSE = [
     "parting_reserve", "angle", "spin", "rolls", "rolling", "slow_change", "unmoved", "untouchable",
-    "unreturnable", "split_from", "lowest_mode", "stiffness_now", "damping_now", "lowest_mode_now", "ramp_ticks", "belt",
-    "spring_untouchable",
-    "split", "element_lowest_mode", "element_stiffness_now", "element_damping_now", "element_lowest_mode_now",
+    "unreturnable", "split_from", "lowest_mode", "stiffness_now", "damping_now", "lowest_mode_now", "ramp_ticks",
+    "belt", "spring_untouchable", "split",
+    "element_lowest_mode", "element_stiffness_now", "element_damping_now", "element_lowest_mode_now",
     "element_ramp_ticks", "element_area_now", "element_area_ticks", "part_impulse", "contact_impact", "hand_strength",
     "hand_radius", "hand_force", "setting_now", "setting_ticks", "rule_held", "rule_fired", "rule_first", "rule_last",
     "rule_due", "rule_stars", "counter", "probe_position", "still_ticks", "key_down", "deed_refused", "deed_budget",
