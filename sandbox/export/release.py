@@ -33,13 +33,14 @@ class NoCurve(ValueError):
 class StepResponse:
     """How a thing came back: tick [s]; errors (n,): how far it is from its place, 1 as it is let go, tick by tick.
 
-    particle: the slot that was pulled; way (2,): where to.
+    particle: the slot that was pulled; way (2,): where to; pull [m]: how far.
     """
 
     tick: float
     errors: Floats
     particle: int
     way: tuple[float, float]
+    pull: float
 
 
 def particle_to_pull(world: World, particles: Slots) -> int:
@@ -63,15 +64,15 @@ def particle_to_pull(world: World, particles: Slots) -> int:
     return int(free[np.argmax(nearest)])
 
 
-def release(world: World, particle: int, way: Sequence[float], size: float) -> StepResponse:
-    """Pull a particle of a thing of a size [m] aside along a way, let it go, and see how it comes back.
+def release(world: World, particle: int, towards: Sequence[float], size: float) -> StepResponse:
+    """Pull a particle of a thing of a size [m] aside, towards somewhere, let it go, and see how it comes back.
 
     The world stays as it is. Raises NoCurve where it does not come back to its place.
     """
-    length = float(np.hypot(way[0], way[1]))
+    length = float(np.hypot(towards[0], towards[1]))
     if not length > 0.0 or not size > 0.0:
         raise NoCurve("it has no size, or the way to pull it has no length")
-    along = np.asarray(way, float) / length
+    along = np.asarray(towards, float) / length
     rested = copy.deepcopy(world)
     _run((rested,), lambda: float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size, MOST_BEFORE)
     for last, share in enumerate(PULLS, 1 - len(PULLS)):
@@ -88,7 +89,8 @@ def release(world: World, particle: int, way: Sequence[float], size: float) -> S
             )
     end = left * errors[0]
     shares = (errors - end) / (errors[0] - end)
-    return StepResponse(1.0 / world.settings.tick_rate, shares, particle, (float(along[0]), float(along[1])))
+    way = float(along[0]), float(along[1])
+    return StepResponse(1.0 / world.settings.tick_rate, shares, particle, way, share * size)
 
 
 def _window(world: World) -> int:

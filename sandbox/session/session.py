@@ -465,7 +465,10 @@ class Session:
     def _own(self, argument: str, state: Snapshot, origin: Floats | None = None) -> Snapshot:
         """A state of this level's world, whose particles begin at origin. Raises ValueError for another."""
         own = self.history.keyframes.first.snapshot.origin if origin is None else origin
-        if not np.array_equal(of_kind(argument, state, Snapshot).origin[: len(own)], own):
+        found = of_kind(argument, state, Snapshot).origin[: len(own)]
+        # A clean cut moves where particles of its body begin.
+        whole = ~np.isin(state.owner[: len(own)], state.owner[state.split_from >= 0])
+        if found.shape != own.shape or not np.array_equal(found[whole], own[whole]):
             raise ValueError(f"{argument}: the snapshot is of another level than {self.level.name!r}")
         return state
 

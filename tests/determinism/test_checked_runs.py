@@ -12,7 +12,8 @@ from tests.support.wants import needs
 # They make whole numbers of what may be beyond 2^63 here; places, spins and spacings of a world never are.
 CASTS = {
     "sandbox.physics.integrate.integrate_positions", "sandbox.physics.meshing.fitting._most_on_border",
-    "sandbox.physics.collision.broad_phase.cell_number",
+    "sandbox.physics.collision.broad_phase.cell_number", "sandbox.physics.collision.outline.new_outline",
+    "sandbox.physics.commands.command.denied",
 }  # fmt: skip
 
 
