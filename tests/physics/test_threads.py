@@ -180,9 +180,12 @@ def test_a_forked_process_starts_threads_of_its_own():
 
 
 _RUNS = """
+import signal
 from sandbox.physics import jit
 from tests.bench import scenes
 from sandbox.physics.step import step
+# Whoever starts tests in the background has them ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 jit.use_threads(3, worth=0)
 world = scenes.lattice(48).world()
 step(world)
@@ -203,7 +206,10 @@ def test_a_process_ends_at_once_in_the_middle_of_a_tick(sent, code):
         assert process.stdout is not None
         assert process.stdout.readline().strip() == "runs"
         process.send_signal(getattr(signal, sent))
-        assert process.wait(timeout=60) == code
+        try:
+            assert process.wait(timeout=60) == code
+        finally:
+            process.kill()
 
 
 _MADE_AND_DROPPED = """
