@@ -461,7 +461,7 @@ def test_a_command_of_the_shell_is_one_file_and_its_name_in_the_table(package):
     put(package / "cli/greet.py", GREET)
     table = package / "cli/__init__.py"
     put(table, "    greet,\n", before="    play,")
-    table.write_text(table.read_text(encoding="utf-8").replace("    play, toy", "    greet, play, toy"))
+    table.write_text(table.read_text(encoding="utf-8").replace("in (play, toy", "in (greet, play, toy"))
     script = """
 from sandbox.cli import main
 Path("two.json").write_bytes(level())

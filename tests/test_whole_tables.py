@@ -136,7 +136,6 @@ REST = {
     "sandbox.app.draw.things.members.HALF": set(LINES) - set(STRANDS),
     # No tag, and no line of its own.
     "sandbox.app.edit.canvas.overlay.draw_snap: snapped.kind": {"grid"},
-    "sandbox.app.edit.edit_screen.status: finding.severity": {"hint"},
 }  # fmt: skip
 # Tables and chains of exceptions: whoever comes is usual there, and they say how.
 EXCEPTIONS = {
@@ -161,7 +160,7 @@ EXCEPTIONS = {
     # What other kernels than that of commands call things.
     "sandbox.session.commands.command._THINGS",
     # Asks `_first_action`, which raises.
-    "sandbox.editor.panel.rule_form._set_does: value",
+    "sandbox.editor.panel.action_form._set_does: value",
 }  # fmt: skip
 
 
@@ -290,7 +289,7 @@ def keys_in_page(module, name):
     ("keys", "members"),
     [
         (rules._KINDS, METRICS - set(UNASKED) | set(GROUPS)),
-        (rule_form._ASKS, set(ASKS) - set(GROUPS) | {"inside"}),
+        (rule_form._ASKS, set(ASKS) | set(GROUPS) | {"inside"}),
         (reference_faults._NOUNS, {*SUBJECTS, "zone"}),
         (textures._SKINS, {*SKINS} | SHAPE_SKINS | WHEEL_SKINS),
         (sound_events._SKINS, {*SKINS} - {"lattice"} | WHEEL_SKINS),

@@ -6,15 +6,18 @@ Each in one of two forms: the curve as it was measured, in points, or the single
 import html
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
 from sandbox.export.feel import Feel, sentence
 from sandbox.export.numbers import percent, short
+from sandbox.export.policy import policy
 from sandbox.physics.arrays import Floats
 
 # How far the points of a curve may be from it, as a share of the way, and what is left when a curve ends.
 CLOSE, ENDED = 0.005, 0.002
+TEMPLATE = Path(__file__).with_name("feel.html")
 MEASURED, NEAREST = "the curve as it was measured", "the single spring that comes nearest"
 
 
@@ -168,20 +171,12 @@ def card_picture(feel: Feel) -> str:
 
 
 def card_page(feel: Feel) -> str:
-    """A page of its own that plays the curve by CSS: a box that moves with it, again and again by a click."""
-    text = html.escape(card_text(feel))
-    return f"""<!doctype html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>{html.escape(feel.name)}</title>
-<style>
-body {{ font: 15px/1.5 system-ui, sans-serif; max-width: 520px; margin: 32px auto; padding: 0 16px }}
-#box {{ width: 56px; height: 56px; border-radius: 12px; background: #c2410c; {_css(feel)} }}
-#box.there {{ transform: translateX(240px) }}
-pre {{ white-space: pre-wrap; overflow-wrap: anywhere; background: #f4f4f5; padding: 12px; border-radius: 8px }}
-svg {{ width: 100% }}
-</style>
-<div id="box"></div><p><button id="go">Again</button></p>
-<pre>{text}</pre>
-{card_picture(feel)}<pre>{html.escape(_css(feel))}</pre>
-<script>document.getElementById("go").onclick = () => document.getElementById("box").classList.toggle("there")</script>
-"""
+    """A page of its own that plays the curve by CSS: a box that goes there and back with it."""
+    parts = {
+        "@TITLE@": html.escape(feel.name), "@TRANSITION@": _css(feel), "@CARD@": html.escape(card_text(feel)),
+        "@PICTURE@": card_picture(feel),
+    }  # fmt: skip
+    text = TEMPLATE.read_text(encoding="utf-8")
+    for place, content in parts.items():
+        text = text.replace(place, content)
+    return text.replace("@POLICY@", policy(text, img="data:"))

@@ -27,7 +27,7 @@ def test_the_bar_has_nine_buttons_at_most_and_its_menu_all_other_actions(driver,
     assert len(bar.buttons) == 9 and {"pause", "reset", "undo", "gallery", "more"} <= set(bar.buttons)
     of_groups = {action for group in (*LEFT, RIGHT) for action, _ in group}
     assert of_groups == set(bar.buttons) | {"edit"}
-    assert set(bar.left_out) == set(MENU) - set(bar.buttons) - {"keep", "ghost", "card", "as_it_was"}
+    assert set(bar.left_out) == set(MENU) - set(bar.buttons) - {"keep", "ghost", "card", "as_it_was", "solution"}
     driver = open_app(edit=True)
     driver.app.act("play")
     driver.frames(2)

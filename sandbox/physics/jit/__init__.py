@@ -185,7 +185,7 @@ def work_beside_others() -> None:
 
 
 def use_threads(count: int, worth: int = WORTH_SHARING) -> None:
-    """Let so many threads share the loops of a tick; the bits are the same with any number.
+    """Choose how many threads share the loops of a tick; the bits are the same with any number.
 
     worth: multiplications of a loop that is shared.
 
