@@ -32,7 +32,8 @@ IN_NODE = {"tests/page/modules": "tests/page/test_modules.py"}
 # Rooms that are one file, or are tested by files of another name.
 BY_ROOM = {
     "cli": ("tests/test_cli.py",), "terminal.py": ("tests/test_cli.py",), "__main__.py": ("tests/test_cli.py",),
-    "__init__.py": ("tests/test_packaging.py",), "processors.py": ("tests/physics/test_threads.py",), "version.py": ("tests/test_packaging.py",),
+    "__init__.py": ("tests/test_packaging.py",), "version.py": ("tests/test_packaging.py",),
+    "processors.py": ("tests/physics/test_threads.py",),
     "commands.py": ("tests/test_examples.py",), "replay.py": ("tests/test_examples.py",),
     "bodies.py": ("tests/test_examples.py",),
 }  # fmt: skip
