@@ -80,7 +80,7 @@ class Feel:
 def numbers_of(errors: Floats, tick: float) -> Numbers:
     """The numbers of a curve of errors, a tick [s] apart, which is 1 first."""
     peaks = _peaks(errors)
-    overshoot = max(0.0, -min((value for value in peaks), default=0.0))
+    overshoot = max(0.0, -min(peaks, default=0.0))
     beyond = np.flatnonzero(np.abs(errors) > AT_REST)
     last = int(beyond[-1])
     after = abs(float(errors[last + 1])) if last + 1 < len(errors) else 0.0
@@ -159,7 +159,7 @@ def feel_of(world: LevelWorld, body: str | None = None, particle: str | None = N
 
 
 def card_of(name: str, released: StepResponse) -> Feel:
-    """The card of what was measured. Raises NoCurve for what is rigid."""
+    """The card of what was measured."""
     stiffness, damping = nearest_spring(released.errors)
     hz, ratio = frequency_from_coefficients(stiffness, damping, released.tick)
     spring = errors_of(stiffness, damping, len(released.errors) - 1)

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from sandbox.cli import main
+from sandbox.cli import feel, main
 from sandbox.export.curves import NEAREST, TOOLS, card_page, card_picture, card_text, curve_for, points_of
 from sandbox.export.feel import card_of, feel_of, numbers_of, pair_for
 from sandbox.export.release import NoCurve, particle_to_pull, release
@@ -188,6 +188,10 @@ def test_springs_of_other_tools_follow_the_curve(tool, pair):
     time = TICK * (np.arange(len(card.curve)) + 0.5)
     errors = (weight * np.exp(roots[0] * time) + (1.0 - weight) * np.exp(roots[1] * time)).real
     assert np.max(np.abs(1.0 - errors - card.curve)[1:]) <= 0.01
+
+
+def test_the_shell_offers_every_tool():
+    assert set(feel.TOOLS) == TOOLS.keys()
 
 
 def test_every_tool_says_which_of_the_two_forms_it_takes(card):
