@@ -55,8 +55,8 @@ def is_of_here(line: str) -> bool:
 
 
 def name_of(config: pytest.Config, path: Path) -> str:
-    """Name for the files of evidence about a file, made of its place."""
-    return "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
+    """Name for the files of evidence about a file: where it lies, so that no two files share one."""
+    return path.relative_to(config.rootpath).as_posix() if path.is_relative_to(config.rootpath) else path.name
 
 
 def runs_of(config: pytest.Config, test: str, runs: Iterable["Session"], reason: str) -> list[str]:
@@ -104,12 +104,12 @@ def _written(config: pytest.Config, name: str, writers: Sequence[_Writer]) -> li
 
 def _files(config: pytest.Config, name: str, writers: Sequence[_Writer]) -> list[str]:
     try:
-        folder = folder_of(config)
+        place = place_of(config, name)
     except OSError as error:
         return [f"no pictures: {_words(error)}; --replay-output DIR puts them where there is room"]
     lines: list[str] = []
     for what, ending, write in writers:
-        target = folder / f"{name}.{ending}"
+        target = place.with_name(f"{place.name}.{ending}")
         try:
             write(target)
         except OSError as error:
@@ -127,14 +127,15 @@ def _words(error: OSError) -> str:
     return f"{error.filename}: {error.strerror or error}" if error.filename else str(error.strerror or error)
 
 
-def folder_of(config: pytest.Config) -> Path:
-    """The folder for pictures and recordings of failed tests. Raises OSError."""
-    output = config.getoption("--replay-output")
+def place_of(config: pytest.Config, name: str) -> Path:
+    """Where evidence of this name goes, but for endings, in folders that are made. Raises OSError."""
+    output, cache = config.getoption("--replay-output"), getattr(config, "cache", None)
     if output:
         folder = config.invocation_params.dir / output
-        folder.mkdir(parents=True, exist_ok=True)
-        return folder
-    cache = getattr(config, "cache", None)
-    if cache is None:
+    elif cache is None:
         raise OSError(0, "pytest's cache is switched off")
-    return Path(cache.mkdir("replays"))
+    else:
+        folder = Path(cache.mkdir("replays"))
+    place = folder / name
+    place.parent.mkdir(parents=True, exist_ok=True)
+    return place

@@ -28,7 +28,7 @@ from sandbox.session.replay.rerecord import (
     record_again,
 )
 from sandbox.session.solution import Proof
-from sandbox.testing.evidence import folder_of, name_of, pictures_of
+from sandbox.testing.evidence import name_of, pictures_of, place_of
 from sandbox.testing.files import SOLUTION, Failed, asked_renames, is_golden, level_files, levels_around
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     failure = [headline, *(line for line in lines if line != headline)]
     smaller: list[str] = []
     if found and not golden.refused:
-        smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
+        smaller = shrunk_lines(config, golden.replay, golden.level, lambda: place_of(config, name_of(config, path)))
     pictures = pictures_of(config, found, path) if found else []
     return Failed(*failure, *pictures, *smaller, _way_out(config, golden, found), found=found)
 

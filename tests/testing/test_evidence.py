@@ -81,6 +81,15 @@ def test_pictures_are_of_the_first_failures_of_none_or_of_all(edited, project, m
     assert project("--replay-pictures=some").ret == pytest.ExitCode.USAGE_ERROR
 
 
+def test_two_recordings_of_one_name_have_pictures_of_their_own_wherever_they_lie(edited, project):
+    for folder in ("runs/a", "runs-a"):
+        (edited / folder).mkdir(parents=True)
+        (edited / folder / "x.replay.jsonl").write_bytes((edited / "one.replay.jsonl").read_bytes())
+    project("runs/a", "runs-a").assert_outcomes(failed=2)
+    found = {path.relative_to(edited / "out").as_posix() for path in (edited / "out").rglob("*.png")}
+    assert found == {"runs/a/x.replay.jsonl.png", "runs-a/x.replay.jsonl.png"}
+
+
 def test_tests_are_chosen_by_what_they_are_and_by_marks_that_the_project_gives(project):
     project("-m", "replay").assert_outcomes(passed=3, deselected=2)
     project("-m", "level", "--strict-markers").assert_outcomes(passed=2, deselected=3)
