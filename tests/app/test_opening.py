@@ -34,6 +34,17 @@ def test_words_are_in_the_window_before_anything_is_looked_for(pictures, capsys)
     assert "words in the window: after" in capsys.readouterr().out
 
 
+def test_the_words_can_be_read_in_the_theme_that_was_chosen(pictures):
+    assert open_app(lambda: StartRequest(small_level()), seconds=0.0, theme="light") == 0
+    background, text = tuple(BACKGROUND), tuple(TEXT)
+    seen = [
+        {tuple(picture.get_at((x, y)))[:3] for x in range(400, 880) for y in range(280, 340)}
+        for picture in pictures
+        if all(tuple(picture.get_at((5, y)))[:3] == background for y in (5, picture.get_height() - 5))
+    ]
+    assert seen and all(text in colours for colours in seen)
+
+
 def test_a_fault_closes_the_window_and_is_raised(pictures, monkeypatch):
     closed = []
     monkeypatch.setattr(Display, "close", lambda display: closed.append(display))

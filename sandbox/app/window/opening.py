@@ -49,8 +49,6 @@ class _StartPicture:
     def __init__(self, display: Display, times: Profile) -> None:
         self._display, self._times, self._scale = display, times, display.scale
         self._began = time.perf_counter()
-        self._title = self._written(True, TITLE_SIZE, "Spring Sandbox", TEXT)
-        self._line = self._written(False, LINE_SIZE, "Starting", MUTED)
 
     def _written(self, bold: bool, size: int, text: str, colour: Colour) -> pygame.Surface:
         return plain_font(round(size * self._scale), bold).render(text, True, colour)
@@ -65,8 +63,11 @@ class _StartPicture:
     def _draw(self, surface: pygame.Surface, seconds: float) -> None:
         surface.fill(BACKGROUND)
         middle, y = surface.get_width() // 2, surface.get_height() // 2
-        surface.blit(self._title, self._title.get_rect(midbottom=(middle, y - round(30 * self._scale))))
-        surface.blit(self._line, self._line.get_rect(midtop=(middle, y + round(34 * self._scale))))
+        # Written for each picture: the theme that the person chose is known only while the app is made.
+        title = self._written(True, TITLE_SIZE, "Spring Sandbox", TEXT)
+        surface.blit(title, title.get_rect(midbottom=(middle, y - round(30 * self._scale))))
+        line = self._written(False, LINE_SIZE, "Starting", MUTED)
+        surface.blit(line, line.get_rect(midtop=(middle, y + round(34 * self._scale))))
         for dot in range(10):
             turn = math.tau * dot / 10
             age = (dot / 10 - seconds * 0.9) % 1.0
