@@ -66,6 +66,8 @@ class CoefficientPad(Draggable):
         self.zones: CoefficientZones | None = None
         self._changed, self._done, self._name = changed, done, ""
         self._map: pygame.Surface | None = None
+        # What words are written on that, where it shows how far a body sags.
+        self._sags: SagMap | None = None
         # Where another run's springs are, and what it is called.
         self._ghost: tuple[str, tuple[float, float]] | None = None
         # What a sweep has measured, shown in place of the zones, how far it is, and where the mouse asks for a number.
@@ -210,16 +212,19 @@ class CoefficientPad(Draggable):
         pygame.draw.aacircle(surface, TEXT, (x, y), px(KNOB))
         pygame.draw.aacircle(surface, SURFACE if self.state.is_mixed else self._knob_colour(), (x, y), px(KNOB - 3))
         name = ", ".join(filter(None, (self._name, self.state.word)))
-        if name:
-            self._paint_name(surface, name, (x, y), TEXT)
+        taken = self._paint_name(surface, name, (x, y), TEXT)
+        self._paint_sag_words(
+            surface, taken.union(pygame.Rect(0, 0, 2 * px(KNOB), 2 * px(KNOB)).move_to(center=(x, y)))
+        )
         return surface
 
-    def _paint_name(self, surface: pygame.Surface, name: str, at: tuple[float, float], colour: Colour) -> None:
+    def _paint_name(self, surface: pygame.Surface, name: str, at: tuple[float, float], colour: Colour) -> pygame.Rect:
+        """Write a name above a place, below it where there is no room; returns where it stands."""
         picture = self.ui.font(WORD_SIZE, True).render(name, True, colour)
         place = picture.get_rect(midbottom=(at[0], at[1] - self.ui.px(KNOB + 2)))
         if place.top < self._inside.top:
             place.midtop = (round(at[0]), round(at[1] + self.ui.px(KNOB + 2)))
-        surface.blit(picture, place.clamp(self._inside))
+        return surface.blit(picture, place.clamp(self._inside))
 
     def _knob_colour(self) -> Colour:
         """The colour of the zone that the knob is in."""
@@ -233,7 +238,7 @@ class CoefficientPad(Draggable):
 
     def _painted_map(self, size: tuple[int, int]) -> pygame.Surface:
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        inside = self._inside
+        inside, self._sags = self._inside, None
         if self._sweep is not None:
             self._paint_layer(surface, inside, self._sweep)
             pygame.draw.rect(surface, DECADE, inside, 1)
@@ -346,7 +351,8 @@ class CoefficientPad(Draggable):
         body = self.state.body
         pixels = pygame.Surface(inside.size, pygame.SRCALPHA)
         if body is not None and body.tells_sag:
-            self._paint_sags(pixels, SagMap.of(body, self.state.scale))
+            self._sags = SagMap.of(body, self.state.scale)
+            self._paint_sags(pixels, self._sags)
         if self._is_plain:
             surface.blit(pixels, inside)
             return
@@ -381,12 +387,16 @@ class CoefficientPad(Draggable):
         colours = pygame.surfarray.pixels3d(pixels)
         colours[border] = ACCENT
         del colours
-        if not self.state.enabled:
-            return
-        for word, (across, up) in sags.places.items():
+
+    def _paint_sag_words(self, surface: pygame.Surface, taken: pygame.Rect) -> None:
+        """Write the words between the lines of the body's sags, but for one that would lie where the knob is taken."""
+        inside = self._inside
+        for word, (across, up) in self._sags.places.items() if self._sags is not None else ():
             picture = self.ui.font(WORD_SIZE).render(word, True, MUTED)
-            place = picture.get_rect(center=(across * width, (1.0 - up) * height))
-            pixels.blit(picture, place.clamp(pixels.get_rect().inflate(-4, -2)))
+            place = picture.get_rect(center=(inside.left + across * inside.width, inside.bottom - up * inside.height))
+            place.clamp_ip(inside.inflate(-4, -2))
+            if not place.colliderect(taken):
+                surface.blit(picture, place)
 
     def _paint_in(
         self, surface: pygame.Surface, inside: pygame.Rect, mask: Mask, words: str, font: pygame.font.Font,
