@@ -254,12 +254,12 @@ export class Panel {
       last = across(place);
     }
     context.stroke();
-    if (sags) this.#drawWords(context, sags, subject, style, { across, up, wide, high });
+    const x = across(scale.placeOf(pair[0])), y = up(scale.placeOf(pair[1]));
+    if (sags) this.#drawWords(context, sags, subject, style, { across, up, wide, high }, [x, y]);
     context.fillStyle = style.getPropertyValue('--accent');
     context.strokeStyle = style.getPropertyValue('--surface');
     context.lineWidth = 3;
     context.beginPath();
-    const x = across(scale.placeOf(pair[0])), y = up(scale.placeOf(pair[1]));
     context.arc(x, y, 9, 0, 7);
     context.stroke();
     context.fill();
@@ -273,10 +273,10 @@ export class Panel {
   }
 
   /** Lines between the words for how far it sags, and the words, as the window draws them: what it is called as it is
-   * stands at the knob.
+   * stands at the knob, and no other word there.
    * @type {(context: CanvasRenderingContext2D, sags: SagMap, subject: string, style: CSSStyleDeclaration,
-   *   map: PadMap) => void} */
-  #drawWords(context, sags, subject, style, { across, up, wide, high }) {
+   *   map: PadMap, knob: Point) => void} */
+  #drawWords(context, sags, subject, style, { across, up, wide, high }, knob) {
     context.fillStyle = style.getPropertyValue('--accent');
     context.globalAlpha = 0.45;
     for (const [x, y] of sags.borders(Math.round(wide), Math.round(high)))
@@ -286,7 +286,9 @@ export class Panel {
     context.font = '12px system-ui, sans-serif';
     for (const [word, [x, y]] of Object.entries(sags.places)) {
       const half = context.measureText(word).width / 2 + 2;
-      context.fillText(word, Math.min(Math.max(across(x), across(0) + half), across(1) - half), up(y) + 4);
+      const middle = Math.min(Math.max(across(x), across(0) + half), across(1) - half);
+      if (Math.abs(middle - knob[0]) < 2 * half && Math.abs(up(y) - knob[1]) < 30) continue;
+      context.fillText(word, middle, up(y) + 4);
     }
     context.textAlign = 'right';
     context.font = '11px system-ui, sans-serif';
