@@ -24,7 +24,7 @@ from tests.support.wholes import part_and_whole
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted, a level takes minutes")
 # Edits of each puzzle, and after how many of those that lose the proof a way is looked for, 60 s of the processor each.
-FEW, MANY, LOOKED = 2, 100, 2
+FEW, MANY, LOOKED = 2, 30, 1
 
 
 def numbers(data, path=()):
