@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 from sandbox.level.document.model import Level
@@ -104,7 +104,7 @@ def _win_of(entry: BoardEntry, levels: Mapping[str, BoardLevel]) -> Win:
     return Win(entry, levels[digest].path.stem, won.stars, result.tick, value, run)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _level(path: Path, digest: str) -> Level:
     """The level of a file, which has this digest; entries write the same in other ways."""
     return read_level(path)
