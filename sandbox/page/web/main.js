@@ -353,6 +353,12 @@ class Page {
     const { toy, best: { kept } } = this;
     if (!kept) return;
     this.goals.close();
+    if (toy.level.recording) {
+      // Who has watched a run plays by hand now.
+      toy.level.recording = null;
+      this.goals.isAsSent = false;
+      toy.restart(false);
+    }
     try {
       const [recording] = await linked(kept.link, toy.level.link);
       await this.#race({ name: OWN, recording });
