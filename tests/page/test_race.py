@@ -24,7 +24,8 @@ LEVEL, SHORT = "chain_of_events", "basket_throw"
 LATE = 24
 # Whose run is raced, once one is, and what was done by hand.
 RACED = """new Promise((done) => {
-  const { goals, toy } = page, look = () => (goals.race ? done([goals.race.name, toy.run.commands.length]) : setTimeout(look));
+  const { goals, toy } = page;
+  const look = () => (goals.race ? done([goals.race.name, toy.run.commands.length]) : setTimeout(look));
   look();
 })"""
 EVIL = '<img src=x onerror="document.title=1"></bdi></table><script>document.title=1</script>@ROWS@{drag}&amp;\'"'
@@ -183,9 +184,11 @@ def test_who_sends_a_run_that_does_not_win_is_not_raced(browser: Browser, addres
 def test_names_are_text_and_a_row_leads_to_its_run_and_its_race(browser: Browser, tmp_path: Path) -> None:
     entries, site = tmp_path / "entries", tmp_path / "site"
     entries.mkdir()
-    (entries / "all.txt").write_text(f"{EVIL[:60]} {solution()}\n{EVIL[60:]} {solution('squeeze')}\n", encoding="utf-8")
+    (entries / "all.txt").write_text(
+        f"{EVIL[:60]} {solution(SHORT)}\n{EVIL[60:]} {solution('catapult_practice')}\n", encoding="utf-8"
+    )
     board = judged(entries)
-    board.levels = {stem: level for stem, level in board.levels.items() if stem in (LEVEL, "squeeze")}
+    board.levels = {stem: level for stem, level in board.levels.items() if stem in (SHORT, "catapult_practice")}
     for _ in write_board(board, site, EVIL, None):
         pass
     with served(site) as at:
@@ -195,7 +198,7 @@ def test_names_are_text_and_a_row_leads_to_its_run_and_its_race(browser: Browser
             f"{win.entry.name} leads: {rank_text(board.levels[win.stem], win)}" for win in board.wins
         )
         assert index.evaluate("document.querySelectorAll('.cards bdi').length") == 2 and index.faults == []
-        for level, name in ((LEVEL, EVIL[:60]), ("squeeze", EVIL[60:])):
+        for level, name in ((SHORT, EVIL[:60]), ("catapult_practice", EVIL[60:])):
             tab = browser.tab().show(f"{at}ranks/{level}.html")
             assert text(tab, "#ranks bdi") == name.strip()
             assert tab.evaluate("document.images.length + document.scripts.length") == 1
