@@ -159,11 +159,15 @@ def shortened(text: str) -> str:
     return _LONG_WORD.sub(r"\1...", text)
 
 
+def plain(text: str) -> str:
+    """A text as one line: a file's name may hold anything, a new line or a terminal's control codes too."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in shortened(text))
+
+
 def tell(lines: Iterable[str]) -> None:
     """Print lines on standard error."""
-    for line in map(shortened, lines):
-        # A file's name may hold anything, a new line or a terminal's control codes too.
-        print("".join(c if c.isprintable() else repr(c)[1:-1] for c in line), file=sys.stderr)
+    for line in lines:
+        print(plain(line), file=sys.stderr)
 
 
 class Progress:

@@ -122,18 +122,12 @@ def _recordings(names: Sequence[str]) -> list[str]:
 
 
 def _all_verified(names: Sequence[str], at_once: int, options: ReplayOptions) -> Generator[Verified, None, None]:
-    if at_once == 1:
-        yield from (_verified(name, options, shows=len(names) == 1) for name in names)
-        return
-    from sandbox.session.worker_pool import interrupts_ignored, worker_pool
+    from sandbox.session.worker_pool import done_in_order
 
-    with worker_pool(at_once) as workers:
-        with interrupts_ignored():
-            waiting = [workers.submit(_verified, name, options) for name in names]
-        yield from (each.result() for each in waiting)
+    return done_in_order(_verified, [(name, options, len(names) == 1) for name in names], at_once)
 
 
-def _verified(name: str, options: ReplayOptions, shows: bool = False) -> Verified:
+def _verified(name: str, options: ReplayOptions, shows: bool) -> Verified:
     """Verify a recording; shows: with bars of its own."""
     from sandbox.session.replay.recording import ReplayError
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sandbox.cli.base.command import Subcommand, arguments, needed_option, option, option_or
-from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of, require_address
 from sandbox.terminal import Progress
 
 
@@ -29,7 +29,7 @@ class SiteOptions:
 
 def site(options: SiteOptions) -> int:
     """Write the site, and tell how large it is. Raises Refused."""
-    from sandbox.app.site.index_page import IndexPage, SiteLevel, is_address
+    from sandbox.app.site.index_page import IndexPage, SiteLevel
     from sandbox.app.site.site import write_site
     from sandbox.level.format.writing import alike
     from sandbox.level.reading.files import shipped_levels
@@ -41,8 +41,8 @@ def site(options: SiteOptions) -> int:
     levels = {path.stem: SiteLevel(path.stem, path, level_of(str(path))) for path in paths}
     if options.output.exists() and not options.output.is_dir():
         raise Refused(f"{options.output}: is no folder")
-    if options.address is not None and not is_address(options.address):
-        raise Refused(f"--address: {options.address} is no address of a site, such as https://example.org/toys")
+    if options.address is not None:
+        require_address(options.address)
     links = _write_documents(options.document, options.output) if options.document else {}
     with Progress(len(levels)) as bar:
         for _ in write_site(levels, options.output, IndexPage(options.title, links, options.address)):

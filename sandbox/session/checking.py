@@ -24,7 +24,7 @@ from sandbox.session.probe import finite
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.solution import Proof, Verdict, keep_solution, solution_of, try_goal
-from sandbox.session.worker_pool import interrupts_ignored, worker_pool
+from sandbox.session.worker_pool import done_in_order
 
 # Said of a level with a goal that lets hands do everything.
 OPEN = "may do everything, so whoever pauses puts things where they win: say in hands what the level is about"
@@ -182,16 +182,5 @@ def _as_data(result: CheckResult) -> dict[str, Any]:
 def check_levels(
     names: Sequence[str], processes: int, rollback: int | None = None
 ) -> Generator[LevelReport, None, None]:
-    """The report on each level, as `check_level` gives it, in order, as soon as it is known; with one process, in this
-    one.
-
-    Close it if not all of them are wanted: processes would work on otherwise.
-    Raises OSError where a process cannot be started, or is gone before it has answered.
-    """
-    if processes == 1:
-        yield from (check_level(name, rollback) for name in names)
-        return
-    with worker_pool(processes) as workers:
-        with interrupts_ignored():
-            waiting = [workers.submit(check_level, name, rollback) for name in names]
-        yield from (each.result() for each in waiting)
+    """The report on each level, as `check_level` gives it: see `done_in_order`."""
+    return done_in_order(check_level, [(name, rollback) for name in names], processes)

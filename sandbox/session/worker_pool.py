@@ -5,13 +5,16 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import connection
+from typing import Any, TypeVar
 
 from sandbox.physics.jit import work_beside_others
+
+Result = TypeVar("Result")
 
 
 @contextmanager
@@ -38,6 +41,23 @@ def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
         if isinstance(error, BrokenProcessPool):
             raise OSError(0, "a process has ended before it has answered; is there memory for all?") from None
         raise
+
+
+def done_in_order(
+    task: Callable[..., Result], tasks: Sequence[Sequence[Any]], processes: int
+) -> Generator[Result, None, None]:
+    """What a task gives for each of these arguments, in order, as soon as it is known; with one process, in this one.
+
+    Close it if not all of them are wanted: processes would work on otherwise.
+    Raises OSError where a process cannot be started, or is gone before it has answered.
+    """
+    if processes == 1:
+        yield from (task(*each) for each in tasks)
+        return
+    with worker_pool(processes) as workers:
+        with interrupts_ignored():
+            waiting = [workers.submit(task, *each) for each in tasks]
+        yield from (each.result() for each in waiting)
 
 
 @contextmanager

@@ -7,21 +7,27 @@ import pytest
 
 from sandbox.app.site.board_pages import write_board
 from sandbox.level.reading.files import level_path, load_level
-from sandbox.session.board import Board
+from sandbox.session.board import Board, rank_text
 from sandbox.session.checking import solution_of
 from sandbox.session.replay.link import fragment_of
 from sandbox.session.replay.reader import read_replay
 from tests.page.browser import Browser, Tab
-from tests.page.deeds import ByFinger
-from tests.page.opened import START_OVER, VERDICT
-from tests.page.pointing import text
+from tests.page.deeds import ByFinger, ByMouse, Player
+from tests.page.opened import START_OVER, VERDICT, saved
+from tests.page.pointing import click, text
 from tests.page.site_server import served
 from tests.page.test_winning import PHONE
 from tests.solutions import SOLUTIONS
 
-LEVEL = "chain_of_events"
+LEVEL, SHORT = "chain_of_events", "basket_throw"
 # How much later somebody begins than the run that is raced [ticks].
 LATE = 24
+# Whose run is raced, once one is, and what was done by hand.
+RACED = """new Promise((done) => {
+  const { goals, toy } = page;
+  const look = () => (goals.race ? done([goals.race.name, toy.run.commands.length]) : setTimeout(look));
+  look();
+})"""
 EVIL = '<img src=x onerror="document.title=1"></bdi></table><script>document.title=1</script>@ROWS@{drag}&amp;\'"'
 
 
@@ -32,8 +38,8 @@ def solution(level: str = LEVEL) -> str:
 
 def judged(folder: Path) -> Board:
     board = Board(folder)
-    for entry in board.entries:
-        board.judge(entry)
+    for _ in board.judge(1, 60.0):
+        pass
     return board
 
 
@@ -41,10 +47,10 @@ def race_of(name: str, link: str) -> str:
     return f"#beat={quote(name, safe='')}&{link.removeprefix('#')}"
 
 
-def play(tab: Tab, late: int) -> None:
-    """Do by touch what the solution does, so many ticks later."""
-    player, rate = ByFinger(tab, []), tab.evaluate("page.toy.rate")
-    ((lines),) = SOLUTIONS[LEVEL]
+def play(tab: Tab, by: type[Player], level: str, late: int) -> None:
+    """Do what the solution does, so many ticks later."""
+    player, rate = by(tab, []), tab.evaluate("page.toy.rate")
+    ((lines),) = SOLUTIONS[level]
     for time, record in lines:
         player.until(round(time * rate) + late)
         player.do(record)
@@ -59,14 +65,14 @@ def address(site):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("late", "words"), [(LATE, "Ada beats you by {}."), (-LATE, "You beat Ada by {}.")], ids=["slower", "faster"]
+    ("late", "words"), [(LATE, "You lose to Ada by {}."), (-LATE, "You beat Ada by {}.")], ids=["slower", "faster"]
 )
 def test_a_race_by_touch_ends_on_a_card_that_says_who_wins_and_enters_the_board(
     browser: Browser, address: str, tmp_path: Path, late: int, words: str
 ) -> None:
     tab = browser.tab(**PHONE).open(f"{address}levels/{LEVEL}.html{race_of('Ada', solution())}")
-    assert tab.evaluate(VERDICT) == "Race Ada: the shade is their run."
-    play(tab, late)
+    assert tab.evaluate(VERDICT) == "Race Ada: the shade is the run to beat."
+    play(tab, ByFinger, LEVEL, late)
     assert text(tab, "#end-card h2") == "Won"
     card = text(tab, "#end-card p").splitlines()[0]
     # Played by pointer events, and sent back.
@@ -78,6 +84,51 @@ def test_a_race_by_touch_ends_on_a_card_that_says_who_wins_and_enters_the_board(
     assert [win.entry.name for win in ranked] == (["Ada", "Ben"] if late > 0 else ["Ben", "Ada"])
     assert card == words.format(f"{abs(ada.ticks - ben.ticks) / load_level(LEVEL).settings.tick_rate:.2f} s")
     assert tab.faults == []
+
+
+@pytest.mark.slow
+def test_the_best_run_made_by_mouse_is_kept_and_raced_and_enters_the_board_as_a_recording(
+    browser: Browser, address: str, tmp_path: Path
+) -> None:
+    page = f"{address}levels/{SHORT}.html"
+    tab = browser.tab().open(page)
+    assert tab.evaluate("localStorage.clear(); [page.best.kept, document.getElementById('best').hidden]") == [
+        None,
+        True,
+    ]
+    play(tab, ByMouse, SHORT, 0)
+    best = tab.evaluate("page.toy.link()")
+    assert saved(tab, tmp_path).exists()
+    board = judged(tmp_path)
+    assert [win.stem for win in board.wins] == [SHORT] and board.faults == []
+    click(tab, "#end-best")
+    assert tab.evaluate(VERDICT) == "Race your best: the shade is the run to beat."
+    assert tab.evaluate("[page.goals.race.result.tick, page.best.kept.link]") == [board.wins[0].ticks, best]
+    # Who watches a run plays by hand from then on.
+    other = browser.tab().open(page + best)
+    click(other, "#best")
+    assert other.evaluate(RACED) == ["your best", 0]
+    assert other.evaluate("localStorage.setItem(localStorage.key(0), '{'); page.best.kept") is None
+    assert tab.faults + other.faults == []
+
+
+def test_only_a_better_run_takes_the_place_of_the_best(browser: Browser, address: str) -> None:
+    tab = browser.tab().open(f"{address}levels/{LEVEL}.html")
+    tab.evaluate("localStorage.clear(); page.toy.link = async () => `#${page.best.kept?.link ?? ''}x`")
+    note = "page.best.note({{ isWon: {}, stars: {}, tick: {} }}).then(() => page.best.kept?.link)"
+    found = [
+        tab.evaluate(note.format(*each))
+        for each in (
+            ("false", 0, 9),
+            ("true", 2, 50),
+            ("true", 1, 9),
+            ("true", 2, 50),
+            ("true", 2, 49),
+            ("true", 3, 99),
+        )
+    ]
+    assert found == [None, "#x", "#x", "#x", "##xx", "###xxx"]
+    assert tab.evaluate("localStorage.clear(); page.best.kept") is None
 
 
 def test_the_shade_goes_along_with_time_and_is_seen(browser: Browser, address: str) -> None:
@@ -133,13 +184,21 @@ def test_who_sends_a_run_that_does_not_win_is_not_raced(browser: Browser, addres
 def test_names_are_text_and_a_row_leads_to_its_run_and_its_race(browser: Browser, tmp_path: Path) -> None:
     entries, site = tmp_path / "entries", tmp_path / "site"
     entries.mkdir()
-    (entries / "all.txt").write_text(f"{EVIL[:60]} {solution()}\n{EVIL[60:]} {solution('squeeze')}\n", encoding="utf-8")
+    (entries / "all.txt").write_text(
+        f"{EVIL[:60]} {solution(SHORT)}\n{EVIL[60:]} {solution('catapult_practice')}\n", encoding="utf-8"
+    )
     board = judged(entries)
-    board.levels = {stem: level for stem, level in board.levels.items() if stem in (LEVEL, "squeeze")}
-    for _ in write_board(board, site, EVIL):
+    board.levels = {stem: level for stem, level in board.levels.items() if stem in (SHORT, "catapult_practice")}
+    for _ in write_board(board, site, EVIL, None):
         pass
     with served(site) as at:
-        for level, name in ((LEVEL, EVIL[:60]), ("squeeze", EVIL[60:])):
+        index = browser.tab().show(f"{at}index.html")
+        leads = index.evaluate("[...document.querySelectorAll('.leads')].map(({ textContent }) => textContent)")
+        assert sorted(leads) == sorted(
+            f"{win.entry.name} leads: {rank_text(board.levels[win.stem], win)}" for win in board.wins
+        )
+        assert index.evaluate("document.querySelectorAll('.cards bdi').length") == 2 and index.faults == []
+        for level, name in ((SHORT, EVIL[:60]), ("catapult_practice", EVIL[60:])):
             tab = browser.tab().show(f"{at}ranks/{level}.html")
             assert text(tab, "#ranks bdi") == name.strip()
             assert tab.evaluate("document.images.length + document.scripts.length") == 1
@@ -148,5 +207,5 @@ def test_names_are_text_and_a_row_leads_to_its_run_and_its_race(browser: Browser
             assert sent == raced
             assert tab.faults == []
             other = browser.tab().open(raced)
-            assert other.evaluate(VERDICT) == f"Race {name.strip()}: the shade is their run."
+            assert other.evaluate(VERDICT) == f"Race {name.strip()}: the shade is the run to beat."
             assert str(browser.tab().open(watched).evaluate(VERDICT)).startswith("Verified: ")

@@ -9,8 +9,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
+from markdown_it import MarkdownIt
 
 from sandbox.cli import main
 from sandbox.level.document.canonical import level_text
@@ -22,11 +24,14 @@ from sandbox.physics.snapshot import state_hash
 from sandbox.session.board import Board
 from sandbox.session.checking import solution_of
 from sandbox.session.commands.records import script_of
+from sandbox.session.judging import BoardEntry, BoardLevel, Win
+from sandbox.session.judging import judged as judged_entry
 from sandbox.session.outcome import outcome
-from sandbox.session.replay.format import seal
+from sandbox.session.replay.format import level_digest, seal
 from sandbox.session.replay.link import MARK, fragment_of, run_of, unpack
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
+from sandbox.session.time_limit import TimeUp, time_limit
 from tests.solutions import SOLUTIONS
 from tests.support import rules_level
 from tests.support.wholes import part_and_whole, some_and_whole
@@ -83,8 +88,8 @@ def folder_of(path: Path, honest: dict[str, Path]) -> Path:
 
 def judged(folder: Path) -> Board:
     board = Board(folder)
-    for entry in board.entries:
-        board.judge(entry)
+    for _ in board.judge(1, 60.0):
+        pass
     return board
 
 
@@ -358,7 +363,7 @@ def test_what_is_no_entry_is_named_and_nothing_is_lost(honest, tmp_path, capsys)
     (folder / "rope.json").write_bytes(Path(level_path("rope")).read_bytes())
     (folder / "broken.json").write_text("{", encoding="utf-8")
     (folder / "away.replay.gz").symlink_to(honest["egg_drop"])
-    assert main(["board", str(folder)]) == 1
+    assert main(["board", str(folder), "--processes", "1"]) == 1
     out, said = capsys.readouterr()
     assert f"{len(honest)} of {len(honest) + 3} entries win" in out
     told = [line.removeprefix(f"{folder}/") for line in said.splitlines()]
@@ -367,6 +372,57 @@ def test_what_is_no_entry_is_named_and_nothing_is_lost(honest, tmp_path, capsys)
         "notes.md", "text.txt", "plain.txt", "long.txt", "turned.txt", "egg_drop.json", "rope.json", "broken.json",
         "away.replay.gz",
     }  # fmt: skip
+
+
+def test_any_number_of_processes_says_the_same_and_a_comment_has_names_as_code(honest, tmp_path, capsys):
+    folder, said = tmp_path / "entries", []
+    folder.mkdir()
+    (folder / "answering.json").write_text(level_text(answering()), encoding="utf-8")
+    link, name = fragment_of(read_replay(honest["catapult_practice"])), "`@you` [x](http://x.example) <b>*A*</b> | ``"
+    lines = [
+        f"{name} {link}",
+        f"Eve {link}",
+        f"Short {link[:60]}",
+        f"Ada {fragment_of(read_replay(honest['answering']))}",
+    ]
+    (folder / "all.txt").write_text("\n".join(lines), encoding="utf-8")
+    for number in (1, 2):
+        comment = tmp_path / f"{number}.md"
+        asked = ["--processes", str(number), "--comment", str(comment), "--address", "https://toys.example/board/"]
+        assert main(["board", str(folder), *asked]) == 1
+        said.append((*capsys.readouterr(), comment.read_text(encoding="utf-8")))
+    assert said[0] == said[1]
+    out, faults, comment = said[0]
+    assert [line.partition(": ")[0] for line in faults.splitlines()] == [f"{folder / 'all.txt'}:{k}" for k in (2, 3)]
+    found = MarkdownIt("gfm-like", {"linkify": False}).parse(comment)
+    parts = [part for block in found for part in block.children or ()]
+    assert name in [part.content for part in parts if part.type == "code_inline"]
+    raced = [part.attrs["href"] for part in parts if part.type == "link_open"]
+    place = "https://toys.example/board/levels"
+    assert [link.partition("&")[0] for link in raced] == [
+        f"{place}/catapult_practice.html#beat={quote(name, safe='')}", f"{place}/answering.html#beat=Ada",
+    ]  # fmt: skip
+    assert all(f"     {link}\n" in out for link in raced)
+    assert all(link.startswith(MARK) for link in (each.partition("&")[2] for each in raced))
+
+
+def test_an_entry_that_takes_too_long_is_named_and_the_others_are_run(honest, tmp_path):
+    levels = {level_digest(level_data(answering())): BoardLevel(tmp_path / "answering.json", "Answering")}
+    (tmp_path / "answering.json").write_text(level_text(answering()), encoding="utf-8")
+    entry = BoardEntry(str(honest["answering"]), "Ada", None)
+    assert judged_entry(entry, levels, 0.01) == f"{entry.place}: took longer than 0.01 s of the processor"
+    assert isinstance(judged_entry(entry, levels, 60.0), Win)
+
+
+def test_what_never_ends_is_broken_off_where_it_is():
+    reached = False
+    with pytest.raises(TimeUp), time_limit(0.05):
+        while True:
+            try:
+                reached = True
+            except Exception:
+                pytest.fail("no fault of its own")
+    assert reached
 
 
 def test_what_was_undone_is_no_deed(tmp_path):

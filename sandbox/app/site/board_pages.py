@@ -3,36 +3,39 @@
 import html
 from collections.abc import Iterator
 from pathlib import Path
-from urllib.parse import quote
 
-from sandbox.app.base.loop import at_once
-from sandbox.app.share.runs_for_pages import link_to
-from sandbox.app.site.index_page import LEVELS, SCRIPTS, STYLE, IndexPage, SiteLevel
+from sandbox.app.site.index_page import SCRIPTS, STYLE, IndexPage, SiteLevel
+from sandbox.app.site.race_links import RaceLinks
 from sandbox.app.site.site import write_site
 from sandbox.export.policy import policy
 from sandbox.level.format.writing import write_file
 from sandbox.page.bundle import BUNDLE
 from sandbox.page.page import filled
-from sandbox.session.board import Board, Win, rank_text
-from sandbox.session.replay.link import BEAT
-from sandbox.session.replay.recording import ReplayError
+from sandbox.session.board import Board, rank_text
+from sandbox.session.judging import Win
 
 RANKS = "ranks"
 
 
-def write_board(board: Board, folder: Path, title: str) -> Iterator[None]:
-    """Write the site of a board into a folder; it goes on after each level. Raises OSError."""
+def write_board(board: Board, folder: Path, title: str, address: str | None) -> Iterator[None]:
+    """Write the site of a board into a folder; it goes on after each level. Raises OSError.
+
+    address: absolute, where the site will be; None: unknown, and links lead from page to page.
+    """
+    links = RaceLinks(address or "..")
     levels = {stem: SiteLevel(stem, board.paths[stem], level) for stem, level in board.levels.items()}
-    yield from write_site(levels, folder, IndexPage(title, {}, None, RANKS))
+    ranks = {stem: board.ranks(stem) for stem in levels}
+    leaders = {stem: _ranked(levels[stem], wins[0]) for stem, wins in ranks.items() if wins}
+    yield from write_site(levels, folder, IndexPage(title, {}, address, RANKS, leaders))
     (folder / RANKS).mkdir(exist_ok=True)
-    for each in levels.values():
-        write_file(folder / RANKS / f"{each.stem}.html", _page(each, board.ranks(each.stem)).encode())
+    for stem, each in levels.items():
+        write_file(folder / RANKS / f"{stem}.html", _page(each, ranks[stem], links).encode())
 
 
-def _page(each: SiteLevel, wins: list[Win]) -> str:
+def _page(each: SiteLevel, wins: list[Win], links: RaceLinks) -> str:
     """The page of a level's ranks, in which names are text."""
     script = filled("ranked", BUNDLE=f"../{SCRIPTS}/{BUNDLE.name}")
-    rows = "".join(_row(each, number, win) for number, win in enumerate(wins, 1))
+    rows = "".join(_row(each, number, win, links) for number, win in enumerate(wins, 1))
     return filled(
         "ranks", TITLE=html.escape(each.level.name), GOAL=html.escape(each.level.goal), PLAY=f"../{each.page}",
         POLICY=policy(script, script="'self'", style="'self'"), STYLE=f"../{STYLE}", SCRIPT=script,
@@ -40,18 +43,15 @@ def _page(each: SiteLevel, wins: list[Win]) -> str:
     )  # fmt: skip
 
 
-def _row(each: SiteLevel, number: int, win: Win) -> str:
-    name = html.escape(win.entry.name)
-    try:
-        run = at_once(link_to(win.run, "", 0)).removeprefix("#")
-    except ReplayError:
-        links = "too long for a link"
-    else:
-        page = f"../{LEVELS}/{each.address}.html"
-        race = html.escape(f"{page}#{BEAT}{quote(win.entry.name, safe='')}&{run}")
-        links = (
-            f'<a href="{page}#{run}">Watch</a> <a href="{race}">Race</a> '
-            f'<button type="button" data-race="{race}">Send</button>'
-        )
-    ranked = html.escape(rank_text(each.level, win))
-    return f"<tr><td>{number}</td><td><bdi>{name}</bdi></td><td>{ranked}</td><td>{links}</td></tr>\n"
+def _row(each: SiteLevel, number: int, win: Win, links: RaceLinks) -> str:
+    watch, race = (html.escape(link or "") for link in (links.watch(win), links.race(win)))
+    shown = (
+        f'<a href="{watch}">Watch</a> <a href="{race}">Race</a> <button type="button" data-race="{race}">Send</button>'
+    )
+    cells = "".join(f"<td>{cell}</td>" for cell in (*_ranked(each, win), shown if watch else "too long for a link"))
+    return f"<tr><td>{number}</td>{cells}</tr>\n"
+
+
+def _ranked(each: SiteLevel, win: Win) -> tuple[str, str]:
+    """A name and what it is ranked by, as markup."""
+    return f"<bdi>{html.escape(win.entry.name)}</bdi>", html.escape(rank_text(each.level, win))

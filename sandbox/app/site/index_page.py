@@ -3,7 +3,7 @@
 import html
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import quote, urlsplit
 
@@ -74,12 +74,14 @@ class IndexPage:
     """What the list of levels says beside them; links: addresses of other pages of the site by what they are called.
 
     address: absolute, where the site will be; None: unknown. opened: the folder of the pages that levels lead to.
+    leaders: by stems of levels, who leads and by what, as markup.
     """
 
     title: str
     links: Mapping[str, str]
     address: str | None
     opened: str = LEVELS
+    leaders: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
 
 def index_text(levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], page: IndexPage) -> str:
@@ -96,7 +98,7 @@ def index_text(levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], 
         SHOWN=link_card(page.title, WORDS, "", hero.card_picture, page.address),
         PRELOADS=_preloads(hero),
         HERO=_hero(hero, states[hero.stem], words[hero.stem]),
-        LEVELS="".join(_section(each, levels, states, words, page.opened) for each in sections),
+        LEVELS="".join(_section(each, levels, states, words, page) for each in sections),
         DOCUMENTS=link.format(link_list(page.links)) if page.links else "",
     )  # fmt: skip
 
@@ -135,18 +137,19 @@ def _hero(each: SiteLevel, state: Snapshot, words: str) -> str:
 
 def _section(
     section: GallerySection, levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], words: Mapping[str, str],
-    opened: str,
+    page: IndexPage,
 ) -> str:  # fmt: skip
-    cards = "".join(_card(levels[stem], states[stem], words[stem], opened) for stem in section.levels if stem in levels)
+    cards = "".join(_card(levels[stem], states[stem], words[stem], page) for stem in section.levels if stem in levels)
     return f"<section><h2>{section.title}</h2><p>{section.line}</p><ul class=cards>{cards}</ul></section>\n"
 
 
-def _card(each: SiteLevel, state: Snapshot, words: str, opened: str) -> str:
+def _card(each: SiteLevel, state: Snapshot, words: str, page: IndexPage) -> str:
     seen = Camera(viewport=(0, 0, *SIZE)).picture_of(crop_of(each.level, state))
+    leads = "<p class=leads>{} leads: {}</p>".format(*page.leaders[each.stem]) if each.stem in page.leaders else ""
     return (
-        f'<li><a href="{opened}/{each.address}.html" data-toy="{each.toy}" data-view="{_numbers(seen)}">'
+        f'<li><a href="{page.opened}/{each.address}.html" data-toy="{each.toy}" data-view="{_numbers(seen)}">'
         f"{_picture(each, 'data-')}"
-        f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p></a></li>"
+        f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p>{leads}</a></li>"
     )
 
 

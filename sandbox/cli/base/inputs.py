@@ -29,6 +29,14 @@ def level_of(name: str) -> "Level":
         raise Refused(*error.faults) from None
 
 
+def require_address(text: str) -> None:
+    """Raises Refused where a text is no address of a site."""
+    from sandbox.app.site.index_page import is_address
+
+    if not is_address(text):
+        raise Refused(f"--address: {text} is no address of a site, such as https://example.org/toys")
+
+
 def is_scene(name: str) -> bool:
     """Whether a file's first bytes are a scene's."""
     from sandbox.session.scene import begins_as_scene

@@ -35,16 +35,16 @@ export class Goals {
     places.solved.hidden = !told.solved;
     if (told.solved) Object.assign(places.solved, { textContent: told.solved.text, href: told.solved.fragment, title: 'Watch it' });
     places.again.addEventListener('click', () => {
-      this.#close();
+      this.close();
       toy.restart();
     });
     places.on.addEventListener('click', () => {
-      this.#close();
+      this.close();
       toy.play();
     });
     places.end.addEventListener('keydown', (event) => this.#key(event));
     places.was.addEventListener('click', () => {
-      this.#close();
+      this.close();
       toy.restart(false);
     });
     // What tells how the run ended has the card again.
@@ -52,7 +52,7 @@ export class Goals {
     places.score.addEventListener('keydown', ({ key }) => (key === 'Enter' || key === ' ') && this.#open());
     toy.addEventListener('outcome', () => this.#open());
     toy.addEventListener('jump', () => {
-      if (toy.outcome?.tick !== toy.run.time) this.#close();
+      if (toy.outcome?.tick !== toy.run.time) this.close();
     });
     toy.addEventListener('draw', () => this.#follow());
   }
@@ -122,14 +122,14 @@ export class Goals {
     /** @type {NodeListOf<HTMLElement>} */
     const all = this.places.end.querySelectorAll('a, button'), inside = [...all].filter((each) => !each.hidden);
     const now = inside.findIndex((each) => each === document.activeElement), by = event.shiftKey ? -1 : 1;
-    if (event.key === 'Escape') this.#close();
+    if (event.key === 'Escape') this.close();
     else if (event.key === 'Tab') inside[(now + by + inside.length) % inside.length].focus({ preventScroll: true });
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 
-  #close() {
+  close() {
     const { end } = this.places;
     if (end.hidden) return;
     end.hidden = true;

@@ -1,4 +1,5 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
+import { Best, OWN } from './best.js';
 import { Refusal } from './commands.js';
 import { typed } from './cursor.js';
 import { Ears } from './ears.js';
@@ -75,6 +76,7 @@ class Page {
       ...level.about.adding.catalogue.map(({ id, name }) => new Option(name[0].toUpperCase() + name.slice(1), id)));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), was: byId('end-was'), on: byId('end-on'), solved: byId('solved') });
+    this.best = new Best(this.toy);
     this.menu = new Menu(byId('menu'), this.toy);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
@@ -88,6 +90,7 @@ class Page {
       this.#verify();
     }
     if (level.rival) this.#race(level.rival);
+    this.#showBest();
     if (said) this.#say(said);
     // Words that leave little of the level wait behind their button.
     if (byId('room').offsetHeight < innerHeight * LEAST) this.#show('hints', 'hint');
@@ -141,6 +144,7 @@ class Page {
         this.#choose('drag');
       },
       link: async () => this.#copy(await this.#linked()), 'end-send': () => this.#send(), 'end-beat': () => this.#send(raced),
+      best: () => this.#raceBest(), 'end-best': () => this.#raceBest(),
       more: () => {
         press(byId('more'), byId('tools').classList.toggle('open'));
         byId('more').setAttribute('aria-expanded', String(byId('tools').classList.contains('open')));
@@ -197,6 +201,11 @@ class Page {
       this.#showMessages();
       this.panel.show();
       this.engineers.follow();
+    });
+    // What somebody sent is nobody's best here.
+    on('outcome', async (outcome) => {
+      if (!toy.level.recording) await this.best.note(outcome);
+      this.#showBest();
     });
     // Both would leave little of the level.
     on('outcome', () => { if (!byId('panel').hidden) this.#show('panel', 'tune'); });
@@ -323,14 +332,40 @@ class Page {
     bar.max = rival.recording.hashes.length - 1;
     bar.hidden = false;
     try {
-      this.goals.race = new Race(toy, rival, await resultOf(toy, rival, (done) => { bar.value = done; }));
-      this.#say({ rank: 'verdict', text: `Race ${rival.name}: the shade is their run.`, isGood: true });
+      const result = await resultOf(toy, rival, (done) => { bar.value = done; });
+      this.goals.race?.close();
+      this.goals.race = new Race(toy, rival, result);
+      this.#say({ rank: 'verdict', text: `Race ${rival.name}: the shade is the run to beat.`, isGood: true });
     } catch (error) {
       this.#say({ rank: 'verdict', text: error instanceof Refusal ? error.message : 'No race: this run could not be compared.' });
       if (!(error instanceof Refusal)) console.error(error);
     }
     bar.hidden = true;
     toy.restart();
+  }
+
+  #showBest() {
+    for (const id of ['best', 'end-best']) byId(id).hidden = !this.best.kept;
+  }
+
+  // Race the best run that is kept here.
+  async #raceBest() {
+    const { toy, best: { kept } } = this;
+    if (!kept) return;
+    this.goals.close();
+    if (toy.level.recording) {
+      // Who has watched a run plays by hand now.
+      toy.level.recording = null;
+      this.goals.isAsSent = false;
+      toy.restart(false);
+    }
+    try {
+      const [recording] = await linked(kept.link, toy.level.link);
+      await this.#race({ name: OWN, recording });
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      this.#say({ rank: 'verdict', text: error.message });
+    }
   }
 
   /** The address of this page with what was done, which it is from then on; null: that is too long. as: the fragment of a

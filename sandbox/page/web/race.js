@@ -5,50 +5,64 @@ import { verified } from './recording.js';
 import { outcome } from './rules.js';
 import { Run } from './run.js';
 /** @import { Toy } from './toy.js' */
-/** @import { Outcome, Rival } from './types.js' */
-
-/** @typedef {{ outcome: Outcome, value: number }} Result */
+/** @import { Outcome, Result, Rival } from './types.js' */
 
 const number = new Intl.NumberFormat('en', { maximumFractionDigits: 2 });
 
-/** What a level measures at the end of a tick: a counter, or the tick.
- * @type {(toy: Toy, world: Toy['world'], tick: number) => number} */
-function measured({ level: { goals: { measure: { counter } } } }, world, tick) {
-  return counter === null ? tick : world.view('state.counter')[counter];
+/** A win by what it is ranked by: stars, what the level measures (a counter, or the tick), the tick.
+ * @type {(toy: Toy, outcome: Outcome, world?: Toy['world']) => Result} */
+export function resultNow(toy, { stars, tick }, world = toy.world) {
+  const { counter } = toy.level.goals.measure;
+  return { stars, tick, value: counter === null ? tick : world.view('state.counter')[counter] };
+}
+
+/** By how much a win is ahead of another, and in words: by stars, then by what the level measures, then by time.
+ * @type {(toy: Toy, mine: Result, theirs: Result) => { by: number, words: string }} */
+export function ahead({ level: { goals: { measure } }, rate }, mine, theirs) {
+  /** @type {(by: number) => string} */
+  const seconds = (by) => `${(by / rate).toFixed(2)} s`;
+  const apart = mine.value - theirs.value;
+  /** @type {[by: number, words: (by: number) => string][]} */
+  const ways = [
+    [mine.stars - theirs.stars, (by) => `${by} star${by > 1 ? 's' : ''}`],
+    [measure.is_most ? apart : -apart, measure.counter === null ? seconds : (by) => `${number.format(by)} (${measure.text})`],
+    [theirs.tick - mine.tick, seconds],
+  ];
+  const [by, words] = ways.find(([each]) => each) ?? [0, seconds];
+  return { by, words: words(Math.abs(by)) };
 }
 
 /** How the run of a rival ends, carried out as by hand. Throws a Refusal where it is not what it says, or does not win.
  * @type {(toy: Toy, rival: Rival, progress: (done: number) => void) => Promise<Result>} */
 export async function resultOf(toy, { recording }, progress) {
   const world = toy.fresh();
-  /** @type {Result | null} */
-  let found = null;
+  /** @type {{ isWon: boolean, result: Result }[]} */
+  const found = [];
   const wrong = await verified(world, recording, progress, () => {
-    const ended = found ? null : outcome(world);
-    if (ended) found = { outcome: ended, value: measured(toy, world, ended.tick) };
+    const ended = found.length ? null : outcome(world);
+    if (ended) found.push({ isWon: ended.isWon, result: resultNow(toy, ended, world) });
   });
   if (wrong) throw new Refusal(`No race: at ${(wrong.tick / toy.rate).toFixed(1)} s ${wrong.words || 'this browser comes to other bits'}.`);
-  const { [0]: result } = /** @type {Result[]} */ ([found ?? []].flat());
-  if (!result?.outcome.isWon) throw new Refusal('No race: the run of this link does not win.');
-  return result;
+  if (!found[0]?.isWon) throw new Refusal('No race: the run of this link does not win.');
+  return found[0].result;
 }
 
 export class Race {
   #run;
   #picture;
   #previous;
+  #closing = new AbortController();
 
   /** @param {Toy} toy @param {Rival} rival @param {Result} result */
   constructor(toy, { name, recording: { commands, hashes } }, result) {
-    const world = toy.fresh();
+    const world = toy.fresh(), { signal } = this.#closing;
     this.toy = toy;
     this.name = name;
     this.result = result;
     this.#run = new Run(world, commands.map((done) => ({ ...done })), hashes.length - 1);
     this.#picture = new Picture(toy.canvas, toy.level.scene, world);
     this.#previous = world.view('state.position').slice();
-    toy.addEventListener('tick', () => this.#follow());
-    toy.addEventListener('jump', () => this.#follow());
+    for (const name of ['tick', 'jump']) toy.addEventListener(name, () => this.#follow(), { signal });
     toy.shade = (part, seconds) => this.#picture.shade(toy.camera, toy.theme, this.#previous, part, seconds);
   }
 
@@ -60,21 +74,18 @@ export class Race {
     while (run.time < tick) run.step();
   }
 
-  /** Who wins by how much, in a sentence: by stars, then by what the level measures, then by time.
+  /** Who wins by how much, in a sentence.
    * @type {(mine: Outcome) => string} */
-  said({ isWon, stars, tick }) {
-    const { name, toy, result: { outcome: theirs, value } } = this, { measure } = toy.level.goals;
-    if (!isWon) return `${name} beats you.`;
-    /** @type {(by: number) => string} */
-    const seconds = (by) => `${(by / toy.rate).toFixed(2)} s`;
-    const apart = measured(toy, toy.world, tick) - value;
-    /** @type {[by: number, words: (by: number) => string][]} */
-    const ways = [
-      [stars - theirs.stars, (by) => `${by} star${by > 1 ? 's' : ''}`],
-      [measure.is_most ? apart : -apart, measure.counter === null ? seconds : (by) => `${number.format(by)} (${measure.text})`],
-      [theirs.tick - tick, seconds],
-    ];
-    const [by, words] = ways.find(([each]) => each) ?? [0, seconds];
-    return by ? `${by > 0 ? `You beat ${name}` : `${name} beats you`} by ${words(Math.abs(by))}.` : `You and ${name} are even.`;
+  said(mine) {
+    const { name, toy, result } = this;
+    if (!mine.isWon) return `You do not beat ${name}.`;
+    const { by, words } = ahead(toy, resultNow(toy, mine), result);
+    return by ? `You ${by > 0 ? 'beat' : 'lose to'} ${name} by ${words}.` : `You and ${name} are even.`;
+  }
+
+  // The shade is seen no more.
+  close() {
+    this.#closing.abort();
+    this.toy.shade = null;
   }
 }

@@ -304,6 +304,13 @@ export interface Rival {
   recording: Recording;
 }
 
+// A win by what it is ranked by: value: of what the level measures.
+export interface Result {
+  stars: number;
+  tick: number;
+  value: number;
+}
+
 // What a level asks, in a line; counters that are shown: place and name; whether time counts.
 export interface Goals {
   goal: string;
