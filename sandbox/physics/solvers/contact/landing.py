@@ -20,13 +20,18 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
 
 # Velocities stand so many steps behind places: what carries at a time of the drift carries so much more of the kick.
 BEHIND = 0.5
+# How far ahead, in steps, contacts are asked about that come nearer before forces and turning have their say.
+AHEAD = 2.0
 
 
 @inner_kernel
 def is_landing(
-    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, h: float
+    contacts: Contacts, terms: ContactConstraints, start: FloatRows, delta_v: FloatRows, h: float
 ) -> bool:  # fmt: skip
-    """Whether contacts begin within a step of h [s], which are then left out, where others carry; and none bounces."""
+    """Whether contacts begin within a step of h [s], which are then left out, where others carry; and none bounces.
+
+    start (n, 2): velocities before forces [m/s], by which what is at rest does not begin; delta_v: zeros.
+    """
     lands, carries = False, False
     for c in range(contacts.particle.shape[0]):
         if contacts.bounce[c] >= 0.0:
@@ -34,7 +39,7 @@ def is_landing(
         if not terms.normal[c] > 0.0:
             continue
         carries = carries or contacts.impulse[c, 0] > 0.0
-        if _is_new(contacts, c) and contacts.gap[c] + h * approach_of(contacts, c, velocity, delta_v) < 0.0:
+        if _is_new(contacts, c) and contacts.gap[c] + AHEAD * h * approach_of(contacts, c, start, delta_v) < 0.0:
             lands = True
     if not (lands and carries):
         return False
