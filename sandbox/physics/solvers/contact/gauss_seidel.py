@@ -146,8 +146,8 @@ def terms_between(terms: ContactConstraints, first: int, last: int) -> ContactCo
     """The constraints of the contacts first..last, in the same arrays."""
     return ContactConstraints(
         terms.bias[first:last], terms.normal[first:last], terms.coupling[first:last], terms.tangent[first:last],
-        terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last], terms.given[first:last],
-        terms.surface, terms.calm[first:last], terms.active,
+        terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last],
+        terms.given[first:last], terms.surface, terms.calm[first:last], terms.active,
     )  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
 # Velocities stand so many steps behind places: what carries at a time of the drift carries so much more of the kick.
 BEHIND = 0.5
 # How far ahead, in steps, contacts are asked about that come nearer before forces and turning have their say.
-AHEAD = 2.0
+SOON = 2.0
 
 
 @inner_kernel
@@ -39,7 +39,7 @@ def is_landing(
         if not terms.normal[c] > 0.0:
             continue
         carries = carries or contacts.impulse[c, 0] > 0.0
-        if _is_new(contacts, c) and contacts.gap[c] + AHEAD * h * approach_of(contacts, c, start, delta_v) < 0.0:
+        if _is_new(contacts, c) and contacts.gap[c] + SOON * h * approach_of(contacts, c, start, delta_v) < 0.0:
             lands = True
     if not (lands and carries):
         return False
@@ -58,7 +58,7 @@ def _is_new(contacts: Contacts, c: int) -> bool:
 def divide_step(
     contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, h: float
 ) -> None:  # fmt: skip
-    """Find where the first of the contacts that were left out begins, and what those that were there give until then."""
+    """Find where the first contact that was left out begins, and what those that were there give until then."""
     share = 1.0
     for c in range(contacts.particle.shape[0]):
         if terms.bias[c] == math.inf:

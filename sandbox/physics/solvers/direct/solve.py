@@ -33,11 +33,11 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_surfaces,
     mark_calm,
 )
+from sandbox.physics.solvers.contact.landing import add_given, divide_step, give, is_landing
 from sandbox.physics.solvers.direct.energy_budget import (
     MORE_SOLVES,
     is_new,
 )
-from sandbox.physics.solvers.contact.landing import add_given, divide_step, give, is_landing
 from sandbox.physics.solvers.direct.island_energy import (
     check_energy,
     clamp_free,
