@@ -21,6 +21,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings
+from sandbox.processors import cores
 from sandbox.session.level_edits import with_settings
 from sandbox.session.sweep.background import BackgroundSweep
 from sandbox.session.sweep.grid import CD, CS, Journal, Rows, SweepError, SweepGrid, read_table
@@ -136,7 +137,7 @@ class PadSweeps:
             self._file, self._grid, self._journal, self._rows = found
             if found.journal is not None:
                 numbers = [number for number in coarse_first(SIDE) if number not in found.rows]
-                self._work = BackgroundSweep(found.grid, numbers, max(1, min(os.cpu_count() or 1, MOST_PROCESSES) - 1))
+                self._work = BackgroundSweep(found.grid, numbers, max(1, min(cores(), MOST_PROCESSES) - 1))
         except (SweepError, LevelError, OSError) as error:
             self.error = str(error)
 
