@@ -260,7 +260,7 @@ class _Reader:
     def take_background(self) -> None:
         """Leave out a first outline that covers the whole page, where others lie on it."""
         outlines = self.drawing.outlines
-        if len(outlines) < 2:
+        if not outlines or len(outlines) + len(self.drawing.lines) < 2:
             return
         found = bounds(outlines[0].rings)
         left, bottom, right, top = found or (0.0, 0.0, 0.0, 0.0)
