@@ -29,6 +29,8 @@ DRAWN_LIMIT = 20_000
 DEPTH_LIMIT = 40
 # A first outline that covers this share of the page, or more, is its background.
 BACKGROUND = 0.98
+# Ends of a stroke meet that are no farther apart than this share of its size.
+SMALL_GAP = 0.1
 CONTAINERS = ("svg", "g", "a", "switch", "symbol")
 # Elements that say nothing of an outline, and are no loss.
 QUIET = ("defs", "style", "metadata", "title", "desc", "namedview", "linearGradient", "radialGradient", "pattern",
@@ -231,7 +233,9 @@ class _Reader:
             raise Unreadable(f"has a stroke wider than {PLACE_LIMIT:,.0f}; draw it thinner")
         for points, closed in ways:
             if len(points) > 3 and not closed:
-                closed = bool(np.all(np.abs(points[0] - points[-1]) <= 1e-6 * (np.abs(points[0]) + 1.0)))
+                # Ends that lie within each other's width are seen to meet, as in drawings by hand.
+                reach = np.maximum(1e-6 * (np.abs(points[0]) + 1.0), min(width, SMALL_GAP * np.ptp(points, axis=0).max()))
+                closed = bool(np.all(np.abs(points[0] - points[-1]) <= reach))
             if closed and len(points) > 2:
                 self.drawing.outlines.append(FilledShape((points,), "nonzero", tint, name))
             elif len(points) > 1:

@@ -559,10 +559,10 @@ class EditScreen:
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
     def title(self) -> str:
-        """Title of the window: the level, * where it is not saved, its file if called otherwise, and that it is edited."""
+        """Title of the window: the level, * where it is not saved, that it is edited, and its file if called otherwise."""
         name, path = self.document.level.name, self.level_file.path
         file = f" ({one_line(path.name)})" if path is not None and path.stem != name else ""
-        return name + ("" if self.history.is_saved else "*") + file + " - Level editor"
+        return name + ("" if self.history.is_saved else "*") + " - Level editor" + file
 
     def states(self) -> list[str]:
         """State words for the window's title: the tool, and how many things are selected."""

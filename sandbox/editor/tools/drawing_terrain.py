@@ -153,4 +153,4 @@ def _corner(point: Snap) -> Point:
 GROUND = EditorTool("ground", "D", "Solid ground", GroundDrawing, "Terrain")
 LINE = EditorTool("line", "C", "A line with two sides", TerrainLineDrawing, "Terrain")
 WALLS = EditorTool("walls", "Shift+D", "Walls around the level", WallsDrawing, "Terrain")
-WATER = EditorTool("water", "Shift+C", "Water: what has less than its density floats", WaterDrawing, "Terrain")
+WATER = EditorTool("water", "Shift+C", "Water: it lifts what is lighter", WaterDrawing, "Terrain")
