@@ -322,3 +322,10 @@ def test_a_page_behind_thin_lines_is_a_background_and_a_word_says_how_lines_come
 def test_a_tile_set_is_called_one(tmp_path):
     with pytest.raises(LevelError, match="is a Tiled tile set, and no map"):
         brought(tmp_path, b'{"columns": 2, "image": "a.png", "imagewidth": 32, "tilewidth": 16, "tileheight": 16}')
+
+
+@pytest.mark.parametrize(("end", "is_closed"), [("10.5 11", True), ("10.5 16", False)])
+def test_a_stroke_whose_ends_lie_within_its_width_is_closed(end, is_closed, tmp_path):
+    path = f'<path stroke="red" fill="none" stroke-width="2" d="M10 10H40V40H10L{end}"/>'
+    data = f'<svg width="400" height="60">{path}<rect x="380" width="20" height="9"/></svg>'.encode()
+    assert len(brought(tmp_path, data, "a.svg").level.bodies) == 1 + is_closed
