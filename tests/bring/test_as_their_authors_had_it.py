@@ -329,3 +329,9 @@ def test_a_stroke_whose_ends_lie_within_its_width_is_closed(end, is_closed, tmp_
     path = f'<path stroke="red" fill="none" stroke-width="2" d="M10 10H40V40H10L{end}"/>'
     data = f'<svg width="400" height="60">{path}<rect x="380" width="20" height="9"/></svg>'.encode()
     assert len(brought(tmp_path, data, "a.svg").level.bodies) == 1 + is_closed
+
+
+def test_a_drawing_without_a_page_has_no_background_and_signs_part_numbers(tmp_path):
+    data = b'<svg><rect width="300" height="100"/><polygon points="400,0 4e2-50,450-50\t450 0"/></svg>'
+    got = brought(tmp_path, data, "a.svg")
+    assert len(got.level.bodies) == 2 and got.left_out == []
