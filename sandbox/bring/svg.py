@@ -236,7 +236,9 @@ class _Reader:
         for points, closed in ways:
             if len(points) > 3 and not closed:
                 # Ends that lie within each other's width are seen to meet, as in drawings by hand.
-                reach = np.maximum(1e-6 * (np.abs(points[0]) + 1.0), min(width, SMALL_GAP * np.ptp(points, axis=0).max()))
+                reach = np.maximum(
+                    1e-6 * (np.abs(points[0]) + 1.0), min(width, SMALL_GAP * np.ptp(points, axis=0).max())
+                )
                 closed = bool(np.all(np.abs(points[0] - points[-1]) <= reach))
             if closed and len(points) > 2:
                 self.drawing.outlines.append(FilledShape((points,), "nonzero", tint, name))

@@ -313,7 +313,8 @@ def test_tiles_without_shapes_are_whole_where_their_layer_is_solid(name, pieces,
 
 
 def test_a_page_behind_thin_lines_is_a_background_and_a_word_says_how_lines_come_in(tmp_path):
-    data = b'<svg width="80" height="40"><rect width="80" height="40"/><path stroke="red" fill="none" stroke-width=".2" d="M5 5L9 30"/></svg>'
+    line = '<path stroke="red" fill="none" stroke-width=".2" d="M5 5L9 30"/>'
+    data = f'<svg width="80" height="40"><rect width="80" height="40"/>{line}</svg>'.encode()
     with pytest.raises(LevelError, match=r"1 open line too thin for a jelly \(as ground it comes in\)"):
         brought(tmp_path, data, "a.svg")
     assert len(brought(tmp_path, data, "a.svg", "ground").level.terrain) == 1

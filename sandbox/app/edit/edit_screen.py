@@ -559,7 +559,7 @@ class EditScreen:
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
     def title(self) -> str:
-        """Title of the window: the level, * where it is not saved, that it is edited, and its file if called otherwise."""
+        """Title of the window: the level, * where it is not saved, and its file where that is called otherwise."""
         name, path = self.document.level.name, self.level_file.path
         file = f" ({one_line(path.name)})" if path is not None and path.stem != name else ""
         return name + ("" if self.history.is_saved else "*") + " - Level editor" + file
