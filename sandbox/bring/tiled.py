@@ -247,7 +247,11 @@ class _Map:
             turn, move = _mirroring(cell, wide, high)
             for shape in self._tiles.shapes[cell & NUMBER]:
                 self._take_shape(shape, (x + move[0], y + move[1]), turn, "", inner=True)
-        return int(shaped.sum() + solid.sum())
+        taken = int(shaped.sum() + solid.sum())
+        plain = int(np.count_nonzero(cells)) - taken
+        if taken and plain:
+            self.drawing.left_out.add("tile without a collision shape", plain)
+        return taken
 
     def _take_blocks(self, solid: NDArray[np.bool_], corner: tuple[int, int], offset: tuple[float, float]) -> None:
         width, height = self._tile
