@@ -145,7 +145,7 @@ def _thicken(drawing: Sketch) -> None:
     thin = THIN * max(box[2] - box[0], box[3] - box[1])
     for line in drawing.lines:
         if line.width < thin or len(line.points) > 2_000:
-            drawing.left_out.add("open line too thin for a jelly")
+            drawing.left_out.add("open line too thin for a jelly (as ground it comes in)")
             continue
         around = shapely.LineString(line.points).buffer(line.width / 2.0, quad_segs=4)
         rings = (around.exterior, *around.interiors)

@@ -42,6 +42,7 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import LASSO, TOOLS
 from sandbox.editor.tools.snap import Snap, snap
+from sandbox.level.format.level_error import one_line
 
 # Sizes in layout units.
 SIDE_WIDTH = 292.0
@@ -558,8 +559,10 @@ class EditScreen:
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
     def title(self) -> str:
-        """Title of the window: the level, * where it is not saved, and that it is edited."""
-        return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
+        """Title of the window: the level, * where it is not saved, and its file where that is called otherwise."""
+        name, path = self.document.level.name, self.level_file.path
+        file = f" ({one_line(path.name)})" if path is not None and path.stem != name else ""
+        return name + ("" if self.history.is_saved else "*") + " - Level editor" + file
 
     def states(self) -> list[str]:
         """State words for the window's title: the tool, and how many things are selected."""

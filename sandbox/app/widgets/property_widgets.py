@@ -282,7 +282,7 @@ class PropertyWidgets:
 
     def _add_choice(self, each: Property, x: float, width: float) -> None:
         about, content = each.about, self._holder
-        few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not (about.optional or about.pick)
+        few = len(about.choices) in range(2, MOST_SIDE_BY_SIDE + 1) and not (about.optional or about.pick)
         width = self._beside_pick(each, x, width)
         if about.tips or (few and sum(map(len, about.choices)) <= SIDE_BY_SIDE):
             labels, tips = about.labels or about.choices, about.tips or (about.tooltip,) * len(about.choices)
