@@ -1,0 +1,182 @@
+"""Pictures that bodies wear: triangles of a body that keep their places in the picture, drawn inside its outline."""
+
+import io
+from collections import OrderedDict
+from dataclasses import dataclass, field
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.app.draw.colours import unpacked
+from sandbox.app.draw.raster.mark_kernels import SHEET, CellArrays
+from sandbox.app.draw.things.level_slots import Actor, Frame
+from sandbox.app.draw.things.wheels import DrawnWheel
+from sandbox.level.format.picture import Picture, size_of
+
+Slots = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+# Sheets begin so many texels apart, and no triangle that is drawn is wider: each lies in one sheet.
+STRIDE = 40
+WIDEST_CELL = SHEET - STRIDE - 2
+# A picture is drawn from an edition of it of at most so many texels a side, and at least.
+MOST_TEXELS, FEWEST_TEXELS = 1024, 32
+# How far triangles at the outline reach beyond it, beside the radius of particles [texels].
+BEYOND = 3.0
+# Bytes of all sheets that are kept, those used last.
+MOST_BYTES = 128 * 1024 * 1024
+
+
+@dataclass(eq=False)
+class Worn:
+    """A picture on triangles (t, 3) of slots, whose corners have places (t, 3, 2) in it, 0..1 to the right and down.
+
+    rim (t,): which lie at the outline. size (2,) [m] of what wears it; radius [m] of its particles.
+    """
+
+    picture: Picture
+    colour: int
+    corners: Slots
+    place: Floats
+    rim: NDArray[np.bool_]
+    size: Floats
+    radius: float
+    _laid: tuple[tuple[int, int], Floats, CellArrays] | None = field(default=None, init=False)
+
+    @classmethod
+    def on(cls, actor: Actor, triangles: Slots, loops: list[Slots], radius: float) -> "Worn":
+        """The picture of a body on triangles (t, 3) of indices of its particles, inside loops of slots."""
+        form, low, size = _upright(actor)
+        place = (form - low) / size * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
+        picture, corners = actor.look.picture, actor.slots[triangles]
+        assert picture is not None
+        around = np.concatenate(loops) if loops else np.zeros(0, dtype=np.int64)
+        rim = np.isin(corners, around).any(axis=1)
+        return cls(picture, actor.look.colour, corners, place[triangles], rim, size, radius)
+
+    def cells(self, frame: Frame) -> tuple[CellArrays, Slots]:
+        """The triangles of a frame, and the sheets that they are of."""
+        texels = _texels(self.picture, self.size * frame.zoom)
+        sheets, columns = _sheets_of(self.picture, self.colour, texels)
+        if self._laid is None or self._laid[0] != texels:
+            self._laid = texels, *self._lay(texels, columns)
+        _, weight, cells = self._laid
+        corner = np.nan_to_num(frame.at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
+        rows = np.concatenate([corner[self.rim], corner])
+        at = weight @ np.repeat(rows, len(weight) // len(rows), axis=0)
+        return cells._replace(corner=at.reshape(-1, 6)), sheets
+
+    def _lay(self, texels: tuple[int, int], columns: int) -> tuple[Floats, CellArrays]:
+        """Parts of triangles as weights (k, 3, 3) of their corners, and where those lie in the sheets.
+
+        First come triangles at the outline made larger, as what is drawn reaches as far as the outline there.
+        """
+        place = self.place * np.array(texels)
+        whole = np.broadcast_to(np.eye(3), (len(place), 3, 3))
+        by = self._larger(place[self.rim], texels)[:, None, None]
+        larger = np.eye(3) * (1.0 + by) - by / 3.0
+        weight, at = np.concatenate([larger, whole]), np.concatenate([place[self.rim], place])
+        wide = float(np.max(np.ptp(weight @ at, axis=1), initial=1.0))
+        parts = _parts_of(int(np.ceil(wide / WIDEST_CELL)))
+        weight = (parts[None] @ weight[:, None]).reshape(-1, 3, 3)
+        texel = weight @ np.repeat(at, len(parts), axis=0)
+        tile = np.clip(np.floor(texel.min(axis=1) / STRIDE).astype(np.int64) + 1, 0, _grid(texels)[::-1] - 1)
+        texel = texel - ((tile - 1) * STRIDE - 1)[:, None]
+        shade = np.zeros((len(texel), 3))
+        return weight, CellArrays(shade, texel.reshape(-1, 6), shade, tile[:, 1] * columns + tile[:, 0])
+
+    def _larger(self, place: Floats, texels: tuple[int, int]) -> Floats:
+        """By how much of themselves triangles (t, 3, 2) grow, so that their sides move far enough outwards."""
+        side = np.roll(place, -1, axis=1) - place
+        area = np.abs(side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0])
+        around = np.sqrt(np.sum(side * side, axis=2)).sum(axis=1)
+        far = BEYOND + 1.5 * self.radius * max(texels[0] / self.size[0], texels[1] / self.size[1])
+        return np.asarray(np.minimum(far * around / np.maximum(area, 1e-9), 2.0))
+
+
+def _upright(actor: Actor) -> tuple[Floats, Floats, Floats]:
+    """Places (n, 2) [m] of particles as the body was described before it was turned; their lower left, and its size."""
+    form, cosine, sine = actor.local_form, np.cos(actor.angle), np.sin(actor.angle)
+    upright = np.stack([form[:, 0] * cosine + form[:, 1] * sine, form[:, 1] * cosine - form[:, 0] * sine], axis=1)
+    low = upright.min(axis=0)
+    return upright, low, np.maximum(upright.max(axis=0) - low, 1e-6)
+
+
+def round_of(actor: Actor, there: NDArray[np.bool_]) -> tuple[Slots, list[Slots]] | None:
+    """Triangles (t, 3) of indices that fill a ring or a wheel, and the loop of slots around them.
+
+    None of any other body, and of one that is torn, of whose springs some are there (m,).
+    """
+    count = len(actor.slots)
+    if actor.body.type == "wheel" and DrawnWheel.is_whole(actor, there):
+        loop = np.arange((count + 1) // 2, count)
+        triangles = np.stack([np.zeros_like(loop), loop, np.roll(loop, -1)], axis=1)
+    elif actor.body.type == "ring" and there.all() and len(there) == count:
+        loop = np.arange(count)
+        # From side to side, so that they are about as even as the loop allows.
+        order = np.empty_like(loop)
+        order[0::2], order[1::2] = loop[: (len(loop) + 1) // 2], loop[: (len(loop) - 1) // 2 : -1]
+        triangles = np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
+    else:
+        return None
+    return triangles, [actor.slots[loop]]
+
+
+def _parts_of(count: int) -> Floats:
+    """The even parts of a triangle, so many along each side: the weights (count^2, 3, 3) of its corners in theirs."""
+    found = []
+    for row in range(count):
+        for k in range(count - row):
+            a, b, c, d = (k, row), (k + 1, row), (k, row + 1), (k + 1, row + 1)
+            found += [(a, b, c), (b, d, c)][: 1 if k == count - row - 1 else 2]
+    at = np.array(found, dtype=np.float64) / count
+    return np.stack([1.0 - at[..., 0] - at[..., 1], at[..., 0], at[..., 1]], axis=-1)
+
+
+def _texels(picture: Picture, pixels: Floats) -> tuple[int, int]:
+    """The size of the edition of a picture that is drawn: by a power of two its own, at least as fine as pixels (2,)."""
+    assert picture.data is not None
+    own = np.array(size_of(picture.data), dtype=np.float64)
+    asked = np.clip(np.max(pixels / own), FEWEST_TEXELS / np.max(own), MOST_TEXELS / np.max(own) / 2.0)
+    wide, high = np.maximum(np.round(own * 2.0 ** np.ceil(np.log2(asked) - 0.2)), 1.0).astype(int).tolist()
+    return wide, high
+
+
+def _grid(texels: tuple[int, int]) -> Slots:
+    """Rows and columns of the sheets of an edition: they reach beyond it by one all around."""
+    return np.array([-(-texels[1] // STRIDE) + 2, -(-texels[0] // STRIDE) + 2])
+
+
+_kept: OrderedDict[tuple[bytes, int, tuple[int, int]], Slots] = OrderedDict()
+
+
+def _sheets_of(picture: Picture, colour: int, texels: tuple[int, int]) -> tuple[Slots, int]:
+    """The sheets (s, SHEET, SHEET) of an edition of a picture over a colour, row by row, and how many a row has."""
+    assert picture.data is not None
+    key = picture.data, colour, texels
+    rows, columns = _grid(texels).tolist()
+    if key not in _kept:
+        image = _flat(picture.data, colour, texels)
+        y, x = (
+            np.clip(np.arange(count)[:, None] * STRIDE - STRIDE - 1 + np.arange(SHEET), 0, most - 1)
+            for count, most in ((rows, texels[1]), (columns, texels[0]))
+        )
+        _kept[key] = image[y[:, None, :, None], x[None, :, None, :]].reshape(-1, SHEET, SHEET)
+        while len(_kept) > 1 and sum(sheets.nbytes for sheets in _kept.values()) > MOST_BYTES:
+            _kept.popitem(last=False)
+    _kept.move_to_end(key)
+    return _kept[key], columns
+
+
+def _flat(data: bytes, colour: int, texels: tuple[int, int]) -> Slots:
+    """The pixels (h, w) 0xRRGGBB of a PNG over a colour, in another size; of one that cannot be unpacked the colour."""
+    flat = pygame.Surface(size_of(data), 0, 32)
+    flat.fill(unpacked(colour))
+    try:
+        flat.blit(pygame.image.load(io.BytesIO(data), "picture.png"), (0, 0))
+    except pygame.error:
+        pass
+    scaled = pygame.transform.smoothscale(flat, texels)
+    red, green, blue = (pygame.surfarray.pixels3d(scaled)[:, :, k].T.astype(np.int64) for k in range(3))
+    return np.asarray(red << 16 | green << 8 | blue)
