@@ -18,10 +18,12 @@ Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 # Sheets begin so many texels apart, and no triangle that is drawn is wider: each lies in one sheet.
-STRIDE = 40
+STRIDE = 32
 WIDEST_CELL = SHEET - STRIDE - 2
 # A picture is drawn from an edition of it of at most so many texels a side, and at least.
 MOST_TEXELS, FEWEST_TEXELS = 1024, 32
+# By what power of two that may be coarser than the pixels it is drawn on.
+COARSER = 0.2
 # How far triangles at the outline reach beyond it, beside the radius of particles [texels].
 BEYOND = 3.0
 # Bytes of all sheets that are kept, those used last.
@@ -42,7 +44,7 @@ class Worn:
     rim: NDArray[np.bool_]
     size: Floats
     radius: float
-    _laid: tuple[tuple[int, int], Floats, CellArrays] | None = field(default=None, init=False)
+    _laid: tuple[tuple[int, int], Slots, Floats, CellArrays] | None = field(default=None, init=False)
 
     @classmethod
     def on(cls, actor: Actor, triangles: Slots, loops: list[Slots], radius: float) -> "Worn":
@@ -61,37 +63,33 @@ class Worn:
         sheets, columns = _sheets_of(self.picture, self.colour, texels)
         if self._laid is None or self._laid[0] != texels:
             self._laid = texels, *self._lay(texels, columns)
-        _, weight, cells = self._laid
+        _, whole, weight, cells = self._laid
         corner = np.nan_to_num(frame.at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
         rows = np.concatenate([corner[self.rim], corner])
-        at = weight @ np.repeat(rows, len(weight) // len(rows), axis=0)
-        return cells._replace(corner=at.reshape(-1, 6)), sheets
+        return cells._replace(corner=(weight @ rows[whole]).reshape(-1, 6)), sheets
 
-    def _lay(self, texels: tuple[int, int], columns: int) -> tuple[Floats, CellArrays]:
-        """Parts of triangles as weights (k, 3, 3) of their corners, and where those lie in the sheets.
+    def _lay(self, texels: tuple[int, int], columns: int) -> tuple[Slots, Floats, CellArrays]:
+        """Parts of triangles: of which (k,), as weights (k, 3, 3) of its corners, and where they lie in the sheets.
 
         First come triangles at the outline made larger, as what is drawn reaches as far as the outline there.
         """
         place = self.place * np.array(texels)
-        whole = np.broadcast_to(np.eye(3), (len(place), 3, 3))
         by = self._larger(place[self.rim], texels)[:, None, None]
-        larger = np.eye(3) * (1.0 + by) - by / 3.0
-        weight, at = np.concatenate([larger, whole]), np.concatenate([place[self.rim], place])
-        wide = float(np.max(np.ptp(weight @ at, axis=1), initial=1.0))
-        parts = _parts_of(int(np.ceil(wide / WIDEST_CELL)))
-        weight = (parts[None] @ weight[:, None]).reshape(-1, 3, 3)
-        texel = weight @ np.repeat(at, len(parts), axis=0)
+        larger, same = np.eye(3) * (1.0 + by) - by / 3.0, np.broadcast_to(np.eye(3), (len(place), 3, 3))
+        (whole, weight), (others, exact) = _parted(larger, place[self.rim]), _parted(same, place)
+        whole, weight = np.concatenate([whole, others + len(larger)]), np.concatenate([weight, exact])
+        texel = weight @ np.concatenate([place[self.rim], place])[whole]
         tile = np.clip(np.floor(texel.min(axis=1) / STRIDE).astype(np.int64) + 1, 0, _grid(texels)[::-1] - 1)
         texel = texel - ((tile - 1) * STRIDE - 1)[:, None]
         shade = np.zeros((len(texel), 3))
-        return weight, CellArrays(shade, texel.reshape(-1, 6), shade, tile[:, 1] * columns + tile[:, 0])
+        return whole, weight, CellArrays(shade, texel.reshape(-1, 6), shade, tile[:, 1] * columns + tile[:, 0])
 
     def _larger(self, place: Floats, texels: tuple[int, int]) -> Floats:
         """By how much of themselves triangles (t, 3, 2) grow, so that their sides move far enough outwards."""
         side = np.roll(place, -1, axis=1) - place
         area = np.abs(side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0])
         around = np.sqrt(np.sum(side * side, axis=2)).sum(axis=1)
-        far = BEYOND + 1.5 * self.radius * max(texels[0] / self.size[0], texels[1] / self.size[1])
+        far = BEYOND + 1.5 * self.radius * float(np.max(np.array(texels) / self.size))
         return np.asarray(np.minimum(far * around / np.maximum(area, 1e-9), 2.0))
 
 
@@ -123,6 +121,14 @@ def round_of(actor: Actor, there: NDArray[np.bool_]) -> tuple[Slots, list[Slots]
     return triangles, [actor.slots[loop]]
 
 
+def _parted(weight: Floats, at: Floats) -> tuple[Slots, Floats]:
+    """Even parts of triangles, whose corners have weights (t, 3, 3) of places (t, 3, 2) [texels], so many that each
+    fits into a sheet: of which triangle (k,), and the weights (k, 3, 3) of their corners."""
+    wide = float(np.max(np.ptp(weight @ at, axis=1), initial=1.0))
+    parts = _parts_of(int(np.ceil(wide / WIDEST_CELL)))
+    return np.repeat(np.arange(len(at)), len(parts)), (parts[None] @ weight[:, None]).reshape(-1, 3, 3)
+
+
 def _parts_of(count: int) -> Floats:
     """The even parts of a triangle, so many along each side: the weights (count^2, 3, 3) of its corners in theirs."""
     found = []
@@ -135,11 +141,11 @@ def _parts_of(count: int) -> Floats:
 
 
 def _texels(picture: Picture, pixels: Floats) -> tuple[int, int]:
-    """The size of the edition of a picture that is drawn: by a power of two its own, at least as fine as pixels (2,)."""
+    """The size of the edition of a picture that is drawn: each way its own by a power of two, about as fine as pixels."""
     assert picture.data is not None
     own = np.array(size_of(picture.data), dtype=np.float64)
-    asked = np.clip(np.max(pixels / own), FEWEST_TEXELS / np.max(own), MOST_TEXELS / np.max(own) / 2.0)
-    wide, high = np.maximum(np.round(own * 2.0 ** np.ceil(np.log2(asked) - 0.2)), 1.0).astype(int).tolist()
+    finer = np.ceil(np.log2(np.clip(pixels, FEWEST_TEXELS, MOST_TEXELS / 2.0) / own) - COARSER)
+    wide, high = np.maximum(np.round(own * 2.0**finer), 1.0).astype(int).tolist()
     return wide, high
 
 
