@@ -31,9 +31,11 @@ from sandbox.app.draw.things.soft import (
     shape_of,
 )
 from sandbox.app.draw.things.wheels import DrawnWheel, added_balls
+from sandbox.app.draw.things.worn import round_of, worn_shape
 from sandbox.app.draw.water import DrawnPool, Pools
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
+from sandbox.level.reading.pictures import pictures_of
 from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot, take
@@ -68,6 +70,9 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         ],
         "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
+        "worn": {
+            name: base64.b64encode(picture.data or b"").decode() for name, picture in sorted(pictures_of(level).items())
+        },
     }
 
 
@@ -172,27 +177,32 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     }
     if look.skin == "lattice":
         return made
+    if look.picture is not None:
+        made["picture"] = str(look.picture)
     if actor.is_filled:
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
         made["keeps_area"] = actor.keeps_areas
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
         loops = [loop for piece in actor.filling(there).pieces for loop in piece.loops]
-        made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
+        whole = shape_of(actor, loops, there, radius) if look.picture is None else worn_shape(actor, loops, radius)
+        made["shapes"] = [_shape(whole)]
         if len(triangles):
             place, face_radius = actor.spot(spot_of)
             made["spot"] = [round(float(value), DIGITS) for value in (*place, face_radius)]
             made["face"] = look.face and look.skin in SOFT_SKINS
+    elif look.picture is not None and (around := round_of(actor, there)) is not None:
+        fan, loops = around
+        made["shapes"], made["fan"] = [_shape(worn_shape(actor, loops, radius))], actor.slots[fan].reshape(-1).tolist()
+        made["needs"] = _closed(actor)
     elif actor.body.type == "ring":
-        made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
+        made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], _closed(actor)
         # Where something is, or will be, tied to it.
         tied = np.concatenate([snapshot.particle_a, snapshot.particle_b])[np.tile(snapshot.material >= 0, 2)]
         made["knots"] = [slot for slot in actor.slots.tolist() if np.count_nonzero(tied == slot) > 2]
     elif actor.body.type == "wheel" and look.skin:
-        wheel, count = DrawnWheel(actor, there, radius), int(made["segments"])
-        numbers = actor.made.numbers
-        made["shapes"], made["wheel"] = [_shape(wheel.shape)], _wheel(wheel)
-        made["needs"] = actor.springs[(numbers >= count) & (numbers < 3 * count)].tolist()
+        wheel = DrawnWheel(actor, there, radius)
+        made["shapes"], made["wheel"], made["needs"] = [_shape(wheel.shape)], _wheel(wheel), _closed(actor)
     elif look.panel is not None and len(hull := hull_of(actor.made.form, actor.pairs)):
         window = [k for k in look.window if k < len(actor.slots)]
         made["shapes"] = [_shape(Shape([actor.slots[hull]], "rubber", look.panel, 0, extra=PANEL_OUT, keep=0.2))]
@@ -202,6 +212,14 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
             pane = Shape([actor.slots[np.array(window)]], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2)
             made["shapes"].append(_shape(pane))
     return made
+
+
+def _closed(actor: Actor) -> list[int]:
+    """The springs that a ring or a wheel has around it: without one of them it is not whole."""
+    if actor.body.type == "ring":
+        return actor.springs.tolist()
+    count, numbers = int(actor.body.__dict__["segments"]), actor.made.numbers
+    return actor.springs[(numbers >= count) & (numbers < 3 * count)].tolist()
 
 
 def _shape(shape: Shape) -> dict[str, Any]:

@@ -7,9 +7,10 @@ import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 import { drawTread } from './treads.js';
 import { Water } from './water.js';
+import { drawWorn, unpacked } from './worn.js';
 /** @import { StateArrays } from './tables.js' */
 /**
- * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
+ * @import { Ball, Bars, Body, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
  *   Wheel, Working } from './types.js'
  */
 /** @import { World } from './world.js' */
@@ -34,6 +35,7 @@ export class Picture {
   #scene;
   #world;
   #water;
+  #worn;
   /** @type {Things | null} */
   #things = null;
   /** @type {Uint8Array[]} */
@@ -56,14 +58,16 @@ export class Picture {
   /** @type {Float64Array} */
   strain = new Float64Array();
 
-  /** @param {HTMLCanvasElement} canvas @param {Scene} scene @param {World} world */
-  constructor(canvas, scene, world) {
+  /** changed: called when there is more to see of the same world.
+   * @param {HTMLCanvasElement} canvas @param {Scene} scene @param {World} world @param {() => void} [changed] */
+  constructor(canvas, scene, world, changed = () => {}) {
     this.#canvas = canvas;
     this.#context = contextOf(canvas);
     this.theme = scene.themes.dark;
     this.#whole = scene;
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
+    this.#worn = unpacked(scene.worn, changed);
     this.#world = world;
     this.#water = new Water(scene, world);
   }
@@ -118,7 +122,7 @@ export class Picture {
   draw(camera, theme, previous, part, seconds, behind = () => {}) {
     const [things, size] = this.#laid(camera, theme, previous, part, seconds), { shapes } = things;
     const context = this.#context, { ratio, scale } = this;
-    shapes.forEach((shape) => makeSkin(shape, camera.width, camera.height));
+    shapes.filter((shape) => shape.layer < 2).forEach((shape) => makeSkin(shape, camera.width, camera.height));
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.#backdropNow(size), 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -131,6 +135,10 @@ export class Picture {
     shapes.filter((shape) => shape.layer === 0).forEach((shape) => this.#drawShape(shape));
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
+    things.worn.forEach((worn) => {
+      if (!worn.texels.length) worn.texels = this.#places(worn.body, worn.triangles);
+      drawWorn(context, worn, this.#worn.get(worn.body.picture ?? ''), this.at, worn.shape.grown * camera.zoom);
+    });
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
     things.balloons.forEach((body) => this.#drawGleams(body));
     things.faces.forEach((face, k) => this.#drawFace(face, k));
@@ -417,13 +425,28 @@ export class Picture {
 
   /** Where the corners of triangles of a body lie in its picture, so many texels to a cell.
    * @type {(body: FilledBody, triangles: number[][], texels: number) => number[][]} */
-  #texels({ angle, spacing, slots }, triangles, texels) {
+  #texels(body, triangles, texels) {
+    const { turned, box: [left, , , low] } = this.#formOf(body), by = texels / body.spacing;
+    return triangles.map((corners) => corners.flatMap(turned).map((value, k) => by * (value - (k % 2 ? low : left))));
+  }
+
+  /** Where they lie in a picture that a body wears, 0..1 to the right and down.
+   * @type {(body: Body, triangles: number[][]) => number[][]} */
+  #places(body, triangles) {
+    const { turned, box: [left, top, right, low] } = this.#formOf(body);
+    const place = (/** @type {number} */ value, /** @type {number} */ k) =>
+      (k % 2 ? (value - top) / (low - top || 1) : (value - left) / (right - left || 1));
+    return triangles.map((corners) => corners.flatMap(turned).map(place));
+  }
+
+  /** Where particles of a body were before it was turned [m], y downwards, and the box around all of them.
+   * @type {(body: Body) => { turned: (slot: number) => number[], box: Box }} */
+  #formOf({ angle, slots }) {
     const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
     /** @type {(slot: number) => number[]} */
     const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
-      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine].map((value) => (value * texels) / spacing);
-    const [left, , , low] = boxOf(slots.flatMap(turned));
-    return triangles.map((corners) => corners.flatMap(turned).map((value, k) => value - (k % 2 ? low : left)));
+      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine];
+    return { turned, box: boxOf(slots.flatMap(turned)) };
   }
 
   /** How large a wheel is.

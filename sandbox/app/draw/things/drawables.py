@@ -29,9 +29,9 @@ from sandbox.app.draw.things.level_slots import (
     whole_triangles,
 )
 from sandbox.app.draw.things.members import Members, Strands, Working
-from sandbox.app.draw.things.soft import FLAT, Shape, Sheets, Soft, keep_of, shape_of, shapes_of
+from sandbox.app.draw.things.soft import Shape, Sheets, Soft, shape_of, shapes_of
 from sandbox.app.draw.things.wheels import Balls, DrawnWheel
-from sandbox.app.draw.things.worn import Worn, round_of
+from sandbox.app.draw.things.worn import WORN, Worn, round_of, worn_shape
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.keeping.equipment import Joined
@@ -104,7 +104,7 @@ class Drawables:
             return False
         radius, (triangles, loops) = self._radius(actor), around
         self._worn.append((len(self._shapes), Worn.on(actor, triangles, loops, radius)))
-        self._shapes.append(Shape(loops, FLAT, actor.look.colour, WORN, radius))
+        self._shapes.append(worn_shape(actor, loops, radius))
         return True
 
     def _add_panel(self, actor: Actor, hull: Slots) -> None:
@@ -162,11 +162,7 @@ class Drawables:
         faces = faces_of(actor, pieces) if look.face and look.skin in SOFT_SKINS and pieces else []
         if look.picture is None:
             return shapes_of(actor, pieces, radius) if look.skin != CLOTH else [], faces, []
-        keeps = [keep_of(actor, piece.loops) for piece in pieces]
-        shapes = [
-            Shape(piece.loops, FLAT, look.colour, WORN, radius, keep=keep)
-            for piece, keep in zip(pieces, keeps, strict=True)
-        ]
+        shapes = [worn_shape(actor, piece.loops, radius) for piece in pieces]
         return shapes, faces, [Worn.on(actor, piece.left, piece.loops, radius) for piece in pieces]
 
     def _add_joins(self, joins: list[Join], ends: Slots) -> None:
@@ -258,8 +254,6 @@ Floats = NDArray[np.float64]
 WORKING = ("coil", "muscle", "piston")
 CLOTH = "cloth"
 CRATES = ("wood", "stone", "brick")
-# The layer of shapes that wear a picture.
-WORN = 2
 WINDOW = 0xBFE6FF
 # How far a panel stands out beyond its bars, and a window back from its corners [pixels at scale 1].
 PANEL_OUT, WINDOW_IN = 4.0, -3.0

@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from sandbox.app.draw.colours import unpacked
 from sandbox.app.draw.raster.mark_kernels import SHEET, CellArrays
 from sandbox.app.draw.things.level_slots import Actor, Frame
+from sandbox.app.draw.things.soft import FLAT, Shape, keep_of
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.format.picture import Picture, size_of
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
+# The layer of shapes that wear a picture.
+WORN = 2
 # Sheets begin so many texels apart, and no triangle that is drawn is wider: each lies in one sheet.
 STRIDE = 32
 WIDEST_CELL = SHEET - STRIDE - 2
@@ -91,6 +94,11 @@ class Worn:
         around = np.sqrt(np.sum(side * side, axis=2)).sum(axis=1)
         far = BEYOND + 1.5 * self.radius * float(np.max(np.array(texels) / self.size))
         return np.asarray(np.minimum(far * around / np.maximum(area, 1e-9), 2.0))
+
+
+def worn_shape(actor: Actor, loops: list[Slots], radius: float) -> Shape:
+    """What wears a picture inside loops of slots; radius [m] of its particles."""
+    return Shape(loops, FLAT, actor.look.colour, WORN, radius, keep=keep_of(actor, loops), line=False)
 
 
 def _upright(actor: Actor) -> tuple[Floats, Floats, Floats]:

@@ -1,0 +1,77 @@
+// Worn: pictures that bodies wear, each cut to its outline.
+import { canvasOf, fillTriangle, tiled } from './paint.js';
+/** @import { Numbers, Scene, Worn, WornPicture } from './types.js' */
+
+// Texels of a side at most, and how far a picture goes on beyond its edges, as a part of itself.
+const MOST = 1024, EDGE = 0.05;
+// How much larger triangles are drawn, so that no seam shows; how far beyond the outline those at it reach [pixels].
+const SEAM = 0.1, BEYOND = 1.5, LARGEST = 2;
+
+/** The pictures of a scene by their names; each is there once it is unpacked, after which `draw` is called.
+ * @type {(pictures: Scene['worn'], draw: () => void) => Map<string, WornPicture>} */
+export function unpacked(pictures, draw) {
+  return new Map(Object.entries(pictures).map(([name, text]) => {
+    /** @type {WornPicture} */
+    const picture = { image: null, over: new Map() };
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    createImageBitmap(new Blob([bytes], { type: 'image/png' })).then((image) => {
+      picture.image = image;
+      draw();
+    }, () => {});
+    return [name, picture];
+  }));
+}
+
+/** A picture over a colour as what fills triangles, whose texels are parts of it; it goes on beyond its edges.
+ * @type {(picture: WornPicture, colour: string) => CanvasPattern | null} */
+function filling({ image, over }, colour) {
+  let made = over.get(colour);
+  if (!made && image) {
+    const [wide, high] = [image.width, image.height].map((side) => Math.max(Math.min(side, MOST), 64));
+    const context = canvasOf(Math.round(wide * (1 + 2 * EDGE)), Math.round(high * (1 + 2 * EDGE)));
+    const { width, height } = context.canvas, x = (width - wide) / 2, y = (height - high) / 2;
+    context.imageSmoothingQuality = 'high';
+    context.fillStyle = colour;
+    context.fillRect(0, 0, width, height);
+    context.drawImage(image, 0, 0, width, height);
+    context.fillRect(x, y, wide, high);
+    context.drawImage(image, x, y, wide, high);
+    made = tiled(context);
+    made.setTransform(new DOMMatrix([1 / wide, 0, 0, 1 / high, -x / wide, -y / high]));
+    over.set(colour, made);
+  }
+  return made ?? null;
+}
+
+/** Draw what a body wears; at: places on the page by slot, reach: how far its outline lies beyond its particles [pixels].
+ * @type {(context: CanvasRenderingContext2D, worn: Worn, picture: WornPicture | undefined, at: Numbers,
+ *   reach: number) => void} */
+export function drawWorn(context, { body: { colour }, shape, triangles, texels, loops }, picture, at, reach) {
+  const pattern = picture && filling(picture, colour), rim = new Set(loops.flat()), before = context.getTransform();
+  if (!pattern) {
+    context.fillStyle = colour;
+    context.fill(shape.path, 'evenodd');
+    return;
+  }
+  context.save();
+  context.clip(shape.path, 'evenodd');
+  context.fillStyle = pattern;
+  context.imageSmoothingQuality = 'high';
+  for (const isRim of [true, false]) {
+    triangles.forEach((slots, k) => {
+      if (isRim && !slots.some((slot) => rim.has(slot))) return;
+      const points = slots.flatMap((slot) => [at[2 * slot], at[2 * slot + 1]]);
+      fillTriangle(context, points, texels[k], isRim ? larger(points, reach + BEYOND) : SEAM);
+      context.setTransform(before);
+    });
+  }
+  context.restore();
+}
+
+/** By how much of itself a triangle grows when its sides move outwards so far.
+ * @type {(points: number[], far: number) => number} */
+function larger([x0, y0, x1, y1, x2, y2], far) {
+  const area = Math.abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0));
+  const around = Math.hypot(x1 - x0, y1 - y0) + Math.hypot(x2 - x1, y2 - y1) + Math.hypot(x0 - x2, y0 - y2);
+  return Math.min((far * around) / (area || 1), LARGEST);
+}
