@@ -86,7 +86,7 @@ function addBody(things, body, now) {
     const shapes = body.shapes.map((shape) => ({ ...shape, springs, cell: body.cell, ...untraced() }));
     things.shapes.push(...shapes);
     if (body.fan) things.worn.push({ body, shape: shapes[0], triangles: threes(body.fan), loops: shapes[0].loops, texels: [] });
-    if (body.skin === 'balloon') things.balloons.push({ ...body, knots: body.knots ?? [] });
+    if (body.skin === 'balloon' && !body.fan) things.balloons.push({ ...body, knots: body.knots ?? [] });
     if (body.wheel) things.wheels.push(body.wheel);
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
 }

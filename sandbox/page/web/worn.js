@@ -7,12 +7,19 @@ const MOST = 1024, EDGE = 0.05;
 // How much larger triangles are drawn, so that no seam shows; how far beyond the outline those at it reach [pixels].
 const SEAM = 0.1, BEYOND = 1.5, LARGEST = 2;
 
+/** By their text.
+ * @type {Map<string, WornPicture>} */
+const kept = new Map();
+
 /** The pictures of a scene by their names; each is there once it is unpacked, after which `draw` is called.
  * @type {(pictures: Scene['worn'], draw: () => void) => Map<string, WornPicture>} */
 export function unpacked(pictures, draw) {
   return new Map(Object.entries(pictures).map(([name, text]) => {
+    const before = kept.get(text);
+    if (before) return [name, before];
     /** @type {WornPicture} */
     const picture = { image: null, over: new Map() };
+    kept.set(text, picture);
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
     createImageBitmap(new Blob([bytes], { type: 'image/png' })).then((image) => {
       picture.image = image;
@@ -33,8 +40,12 @@ function filling({ image, over }, colour) {
     context.imageSmoothingQuality = 'high';
     context.fillStyle = colour;
     context.fillRect(0, 0, width, height);
-    context.drawImage(image, 0, 0, width, height);
-    context.fillRect(x, y, wide, high);
+    // The pixels at its edges go on, then comes the picture itself.
+    const { width: across, height: down } = image;
+    context.drawImage(image, 0, 0, 1, down, 0, y, x, high);
+    context.drawImage(image, across - 1, 0, 1, down, x + wide, y, x, high);
+    context.drawImage(image, 0, 0, across, 1, x, 0, wide, y);
+    context.drawImage(image, 0, down - 1, across, 1, x, y + high, wide, y);
     context.drawImage(image, x, y, wide, high);
     made = tiled(context);
     made.setTransform(new DOMMatrix([1 / wide, 0, 0, 1 / high, -x / wide, -y / high]));
