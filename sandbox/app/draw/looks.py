@@ -119,7 +119,9 @@ def body_looks(level: Level, pictures: Mapping[str, Picture] | None = None) -> l
         else:
             colour = PAINTS.get(body.type, PAINTS["mesh"])
         panel = colour_of(said["panel"]) if "panel" in said else None
-        picture = pictures.get(said.get("picture", ""))
+        picture = said.get("picture")
+        if picture is not None and picture.data is None:
+            picture = pictures.get(picture)
         face = bool(said.get("face", skin == "jelly" and may_have_faces and picture is None))
         looks.append(Look(skin, line, colour, face, said.get("width", 1.0), panel, said.get("window", ()), picture))
     return looks

@@ -1,6 +1,7 @@
 """Scene: what is drawn of a level, as plain data for a page that draws it by itself."""
 
 import base64
+import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
@@ -35,7 +36,7 @@ from sandbox.app.draw.things.worn import round_of, worn_shape
 from sandbox.app.draw.water import DrawnPool, Pools
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
-from sandbox.level.reading.pictures import pictures_of
+from sandbox.level.format.picture import Picture
 from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot, take
@@ -71,7 +72,9 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
         "worn": {
-            name: base64.b64encode(picture.data or b"").decode() for name, picture in sorted(pictures_of(level).items())
+            _key_of(each): base64.b64encode(each.data or b"").decode()
+            for each in (actor.look.picture for actor in slots.actors)
+            if each is not None
         },
     }
 
@@ -178,7 +181,7 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     if look.skin == "lattice":
         return made
     if look.picture is not None:
-        made["picture"] = str(look.picture)
+        made["picture"] = _key_of(look.picture)
     if actor.is_filled:
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
@@ -212,6 +215,11 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
             pane = Shape([actor.slots[np.array(window)]], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2)
             made["shapes"].append(_shape(pane))
     return made
+
+
+def _key_of(picture: Picture) -> str:
+    """What a page calls a picture: two of one name may differ."""
+    return hashlib.blake2b(picture.data or b"", digest_size=8).hexdigest()
 
 
 def _closed(actor: Actor) -> list[int]:

@@ -75,9 +75,9 @@ class BodyLook(Description):
     )
     picture: PictureName | None = Field(
         default=None,
-        description="Name of a PNG beside the level's file, which a jelly, a mesh of triangles, a ring or a wheel wears: "
-        "stretched over its form, cut to its outline. Where the picture is transparent, the colour shows. At most "
-        f"{PICTURE_LIMIT // 1024 // 1024} MiB and {SIDE_LIMIT:,} pixels a side.",
+        description="Name of a PNG beside the level's file, which a jelly, a mesh of triangles, a ring or a wheel "
+        "wears: stretched over its form, cut to its outline. Where the picture is transparent, the colour shows. At "
+        f"most {PICTURE_LIMIT // 1024 // 1024} MiB and {SIDE_LIMIT:,} pixels a side.",
         json_schema_extra=empty("none"),
     )
     line: LineName | None = Field(

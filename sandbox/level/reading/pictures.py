@@ -1,6 +1,8 @@
 """Pictures that looks of a level name: read from the folder of its file, and written there."""
 
-from collections.abc import Iterator, Mapping
+import itertools
+import os
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +10,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.picture import NoPicture, Picture, read_picture
-from sandbox.level.format.writing import refusal_of, write_file
+from sandbox.level.format.quantities import replaced
 
 
 def pictures_of(level: Level) -> dict[str, Picture]:
@@ -53,44 +55,79 @@ def lacking(level: Level) -> str | None:
     return f"{', '.join(names)}: not here, so what wears it has its usual skin" if names else None
 
 
-def write_pictures(level: Level, folder: Path, source: str) -> None:
-    """Write the pictures of a level into the folder of its file. What lies there already stays as it is.
+def placed_pictures(level: Level, folder: Path, source: str) -> tuple[Level, dict[Path, bytes]]:
+    """A level whose pictures have names that are free in a folder, or theirs; and what is to be written there.
 
-    Raises LevelError for a name that another picture has there, for one that was never read and does not lie there, and
-    where the folder takes none; then nothing is written.
+    What lies there stays as it is. Raises LevelError for a picture that was never read and does not lie there.
     """
     faults: list[Fault] = []
     missing: dict[Path, bytes] = {}
-    for where, look in _wearing(level):
-        picture, path = look.picture, folder / look.picture
+
+    def place(where: str, look: BodyLook) -> BodyLook:
+        picture = look.picture
+        assert isinstance(picture, Picture)
+        if picture.data is None and not (folder / picture).is_file():
+            faults.append((where, f"{shown(str(picture))} is not here: choose it again, or take it out"))
         if picture.data is None:
-            if not path.is_file():
-                faults.append((where, f"{shown(str(picture))} is not here: choose it again, or take it out"))
-        elif not path.exists() and missing.get(path, picture.data) == picture.data:
+            return look
+        path = next(path for path in _names(folder, picture) if _is_free(path, picture, missing))
+        if not path.exists():
             missing[path] = picture.data
-        elif path in missing or not _is_of(picture, path):
-            faults.append((where, f"{shown(str(picture))}: another picture of that name is here; rename one of them"))
+        return replaced(look, picture=Picture(path.name, picture.data, picture.path))
+
+    changed = _with_looks(level, place)
     if faults:
         raise LevelError(source, faults)
-    for path, data in missing.items():
-        try:
-            write_file(path, data)
-        except (OSError, ValueError) as error:
-            raise LevelError(source, [("", f"{path.name} cannot be written beside it: {refusal_of(error)}")]) from None
+    return changed, missing
 
 
-def _is_of(picture: Picture, path: Path) -> bool:
-    """Whether a file is where a picture came from, though it may have changed since, or holds the same."""
+def _names(folder: Path, picture: Picture) -> Iterator[Path]:
+    yield folder / picture
+    stem = picture[: -len(".png")]
+    yield from (folder / f"{stem}-{number}.png" for number in itertools.count(2))
+
+
+def _is_free(path: Path, picture: Picture, missing: Mapping[Path, bytes]) -> bool:
+    """Whether a file is not there, holds this picture, or is where it came from, though it may have changed since."""
+    if path in missing:
+        return missing[path] == picture.data
+    if not os.path.lexists(path):
+        return True
     try:
-        return str(path.resolve()) == picture.path or path.read_bytes() == picture.data
+        return os.path.realpath(path) == picture.path or path.read_bytes() == picture.data
     except OSError:
         return False
+
+
+def _with_looks(level: Level, change: Callable[[str, BodyLook], BodyLook]) -> Level:
+    """A level with others of the looks that have a picture; the same where it has none."""
+    wearing = dict(_wearing(level))
+    if not wearing:
+        return level
+    made = {where: change(where, look) for where, look in wearing.items()}
+    bodies = tuple(
+        replaced(body, look=made[where]) if (where := _of_body(k)) in made else body
+        for k, body in enumerate(level.bodies)
+    )
+    materials = {
+        name: replaced(each, look=made[where]) if (where := _of_material(name)) in made else each
+        for name, each in level.materials.items()
+    }
+    return replaced(level, bodies=bodies, materials=materials)
+
+
+def _of_body(number: int) -> str:
+    return json_path(["bodies", number, "look", "picture"])
+
+
+def _of_material(name: str) -> str:
+    return json_path(["materials", name, "look", "picture"])
 
 
 def _wearing(level: Level) -> Iterator[tuple[str, Any]]:
     """Looks with a picture, and where they are."""
     looks: list[tuple[str, BodyLook | None]] = [
-        *((json_path(["bodies", k, "look", "picture"]), body.look) for k, body in enumerate(level.bodies)),
-        *((json_path(["materials", name, "look", "picture"]), each.look) for name, each in level.materials.items()),
+        *((_of_body(k), body.look) for k, body in enumerate(level.bodies) if body.look is not None),
+        *((_of_material(name), each.look) for name, each in level.materials.items() if each.look is not None),
     ]
     return ((where, look) for where, look in looks if look is not None and look.picture is not None)

@@ -1,5 +1,6 @@
 """Pictures that bodies wear: triangles of a body that keep their places in the picture, drawn inside its outline."""
 
+import contextlib
 import io
 from collections import OrderedDict
 from dataclasses import dataclass, field
@@ -25,8 +26,9 @@ STRIDE = 32
 WIDEST_CELL = SHEET - STRIDE - 2
 # A picture is drawn from an edition of it of at most so many texels a side, and at least.
 MOST_TEXELS, FEWEST_TEXELS = 1024, 32
-# By what power of two that may be coarser than the pixels it is drawn on.
-COARSER = 0.2
+# By what power of two it is finer than the pixels it is drawn on, at least; it shows no more than half of its texels
+# could, so that it is smooth though each pixel takes one texel.
+FINER = 0.3
 # How far triangles at the outline reach beyond it, beside the radius of particles [texels].
 BEYOND = 3.0
 # Bytes of all sheets that are kept, those used last.
@@ -149,10 +151,10 @@ def _parts_of(count: int) -> Floats:
 
 
 def _texels(picture: Picture, pixels: Floats) -> tuple[int, int]:
-    """The size of the edition of a picture that is drawn: each way its own by a power of two, about as fine as pixels."""
+    """The size of the drawn edition of a picture: each way its own by a power of two, finer than pixels (2,)."""
     assert picture.data is not None
     own = np.array(size_of(picture.data), dtype=np.float64)
-    finer = np.ceil(np.log2(np.clip(pixels, FEWEST_TEXELS, MOST_TEXELS / 2.0) / own) - COARSER)
+    finer = np.ceil(np.log2(np.clip(pixels, FEWEST_TEXELS, MOST_TEXELS / 2.0) / own) + FINER)
     wide, high = np.maximum(np.round(own * 2.0**finer), 1.0).astype(int).tolist()
     return wide, high
 
@@ -187,10 +189,9 @@ def _flat(data: bytes, colour: int, texels: tuple[int, int]) -> Slots:
     """The pixels (h, w) 0xRRGGBB of a PNG over a colour, in another size; of one that cannot be unpacked the colour."""
     flat = pygame.Surface(size_of(data), 0, 32)
     flat.fill(unpacked(colour))
-    try:
+    with contextlib.suppress(pygame.error):
         flat.blit(pygame.image.load(io.BytesIO(data), "picture.png"), (0, 0))
-    except pygame.error:
-        pass
-    scaled = pygame.transform.smoothscale(flat, texels)
+    half = pygame.transform.smoothscale(flat, (max(texels[0] // 2, 1), max(texels[1] // 2, 1)))
+    scaled = pygame.transform.smoothscale(half, texels)
     red, green, blue = (pygame.surfarray.pixels3d(scaled)[:, :, k].T.astype(np.int64) for k in range(3))
     return np.asarray(red << 16 | green << 8 | blue)
