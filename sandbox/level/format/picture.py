@@ -35,6 +35,17 @@ class Picture(str):
         made.data, made.path = data, path
         return made
 
+    def __eq__(self, other: object) -> bool:
+        """Whether the names are the same, and what is in both, where both were read."""
+        is_read = isinstance(other, Picture) and self.data is not None and other.data is not None
+        return str.__eq__(self, other) and not (is_read and self.data != other.data)  # type: ignore[attr-defined]
+
+    def __ne__(self, other: object) -> bool:
+        """Whether names or pictures differ."""
+        return not self == other
+
+    __hash__ = str.__hash__
+
 
 class NoPicture(ValueError):
     """A file that is no picture to wear; its text is one line, to be read after the file's name."""

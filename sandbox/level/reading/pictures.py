@@ -52,7 +52,7 @@ def lacking(level: Level) -> str | None:
     """A line about pictures that a level names and does not have, None where it has all."""
     have = pictures_of(level)
     names = sorted({shown(str(look.picture)) for _, look in _wearing(level) if look.picture not in have})
-    return f"{', '.join(names)}: not here, so what wears it has its usual skin" if names else None
+    return f"{', '.join(names)}: not here; what wears it has its usual skin" if names else None
 
 
 def placed_pictures(level: Level, folder: Path, source: str) -> tuple[Level, dict[Path, bytes]]:
