@@ -37,8 +37,10 @@ class Picture(str):
 
     def __eq__(self, other: object) -> bool:
         """Whether the names are the same, and what is in both, where both were read."""
-        is_read = isinstance(other, Picture) and self.data is not None and other.data is not None
-        return str.__eq__(self, other) and not (is_read and self.data != other.data)  # type: ignore[attr-defined]
+        theirs = other.data if isinstance(other, Picture) else None
+        return (
+            isinstance(other, str) and str(self) == str(other) and (None in (self.data, theirs) or self.data == theirs)
+        )
 
     def __ne__(self, other: object) -> bool:
         """Whether names or pictures differ."""
