@@ -41,6 +41,7 @@ function filling({ image, over }, colour) {
     context.fillStyle = colour;
     context.fillRect(0, 0, width, height);
     // The pixels at its edges go on, then comes the picture itself.
+    context.drawImage(image, 0, 0, width, height);
     const { width: across, height: down } = image;
     context.drawImage(image, 0, 0, 1, down, 0, y, x, high);
     context.drawImage(image, across - 1, 0, 1, down, x + wide, y, x, high);
@@ -70,7 +71,7 @@ export function drawWorn(context, { body: { colour }, shape, triangles, texels, 
   context.imageSmoothingQuality = 'high';
   for (const isRim of [true, false]) {
     triangles.forEach((slots, k) => {
-      if (isRim && !slots.some((slot) => rim.has(slot))) return;
+      if (isRim && slots.filter((slot) => rim.has(slot)).length < 2) return;
       const points = slots.flatMap((slot) => [at[2 * slot], at[2 * slot + 1]]);
       fillTriangle(context, points, texels[k], isRim ? larger(points, reach + BEYOND) : SEAM);
       context.setTransform(before);

@@ -182,8 +182,8 @@ class Painter:
         for corner, sheet in zip(arrays.corner[seen].tolist(), arrays.sheet[seen].tolist(), strict=True):
             pygame.draw.polygon(self.surface, unpacked(tones[sheet]), (corner[:2], corner[2:4], corner[4:]))
 
-    def cut_out(self, outlines: Outlines, cells: CellArrays, sheets: Slots) -> None:
-        """Draw textured triangles as far as they lie inside outlines."""
+    def cut_out(self, outlines: Outlines, fill: int, cells: CellArrays, sheets: Slots) -> None:
+        """Draw textured triangles as far as they lie inside outlines, where 0xRRGGBB fills what they leave."""
         left, top, right, bottom = self.clip.tolist()
         if not (len(outlines.point) and (np.abs(outlines.point) < FAR).all()):
             return
@@ -192,7 +192,7 @@ class Painter:
         box = box.clip((left, top, right - left, bottom - top))
         if not box.size[0] * box.size[1]:
             return
-        laid, cover = np.zeros((2, *box.size[::-1]), dtype=np.uint32)
+        laid, cover = np.full(box.size[::-1], fill, dtype=np.uint32), np.zeros(box.size[::-1], dtype=np.uint32)
         clip, corner = np.array([0, 0, *box.size], dtype=np.int64), np.array(box.topleft, dtype=np.float64)
         paint_cells(laid, cells._replace(corner=cells.corner - np.tile(corner, 3)), sheets, np.zeros(9), clip)
         loops = np.array([[0, len(outlines.start) - 1]], dtype=np.int64)

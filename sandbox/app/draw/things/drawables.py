@@ -218,7 +218,7 @@ class Drawables:
             self._draw_layer(painter, frame, WORN, is_lattice)
             return
         for k, worn in self._worn:
-            painter.cut_out(self.soft.outlines_of(k), *worn.cells(frame))
+            painter.cut_out(self.soft.outlines_of(k), worn.colour, *worn.cells(frame))
 
     def _draw_layer(self, painter: Painter, frame: Frame, number: int, is_lattice: bool) -> None:
         layer = self.soft.layer(number, frame, is_lattice)

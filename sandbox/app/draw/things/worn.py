@@ -29,8 +29,9 @@ MOST_TEXELS, FEWEST_TEXELS = 1024, 32
 # By what power of two it is finer than the pixels it is drawn on, at least; it shows no more than half of its texels
 # could, so that it is smooth though each pixel takes one texel.
 FINER = 0.3
-# How far triangles at the outline reach beyond it, beside the radius of particles [texels].
-BEYOND = 3.0
+# How far triangles at the outline reach beyond it [pixels], beside so many radii of particles; and how much larger they
+# become at most.
+BEYOND, ROOM, MOST_LARGER = 3.0, 1.5, 3.0
 # Bytes of all sheets that are kept, those used last.
 MOST_BYTES = 128 * 1024 * 1024
 
@@ -59,7 +60,7 @@ class Worn:
         picture, corners = actor.look.picture, actor.slots[triangles]
         assert picture is not None
         around = np.concatenate(loops) if loops else np.zeros(0, dtype=np.int64)
-        rim = np.isin(corners, around).any(axis=1)
+        rim = np.isin(corners, around).sum(axis=1) > 1
         return cls(picture, actor.look.colour, corners, place[triangles], rim, size, radius)
 
     def cells(self, frame: Frame) -> tuple[CellArrays, Slots]:
@@ -70,8 +71,12 @@ class Worn:
             self._laid = texels, *self._lay(texels, columns)
         _, whole, weight, cells = self._laid
         corner = np.nan_to_num(frame.at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
-        rows = np.concatenate([corner[self.rim], corner])
+        rows = np.concatenate([_larger(corner[self.rim], self._beyond(frame.zoom)), corner])
         return cells._replace(corner=(weight @ rows[whole]).reshape(-1, 6)), sheets
+
+    def _beyond(self, scale: float) -> float:
+        """How far triangles at the outline reach beyond it, of as many pixels or texels a metre."""
+        return BEYOND + ROOM * self.radius * scale
 
     def _lay(self, texels: tuple[int, int], columns: int) -> tuple[Slots, Floats, CellArrays]:
         """Parts of triangles: of which (k,), as weights (k, 3, 3) of its corners, and where they lie in the sheets.
@@ -79,23 +84,24 @@ class Worn:
         First come triangles at the outline made larger, as what is drawn reaches as far as the outline there.
         """
         place = self.place * np.array(texels)
-        by = self._larger(place[self.rim], texels)[:, None, None]
-        larger, same = np.eye(3) * (1.0 + by) - by / 3.0, np.broadcast_to(np.eye(3), (len(place), 3, 3))
-        (whole, weight), (others, exact) = _parted(larger, place[self.rim]), _parted(same, place)
+        larger = _larger(place[self.rim], self._beyond(float(np.max(np.array(texels) / self.size))))
+        (whole, weight), (others, exact) = _parted(larger), _parted(place)
         whole, weight = np.concatenate([whole, others + len(larger)]), np.concatenate([weight, exact])
-        texel = weight @ np.concatenate([place[self.rim], place])[whole]
+        texel = weight @ np.concatenate([larger, place])[whole]
         tile = np.clip(np.floor(texel.min(axis=1) / STRIDE).astype(np.int64) + 1, 0, _grid(texels)[::-1] - 1)
         texel = texel - ((tile - 1) * STRIDE - 1)[:, None]
         shade = np.zeros((len(texel), 3))
         return whole, weight, CellArrays(shade, texel.reshape(-1, 6), shade, tile[:, 1] * columns + tile[:, 0])
 
-    def _larger(self, place: Floats, texels: tuple[int, int]) -> Floats:
-        """By how much of themselves triangles (t, 3, 2) grow, so that their sides move far enough outwards."""
-        side = np.roll(place, -1, axis=1) - place
-        area = np.abs(side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0])
-        around = np.sqrt(np.sum(side * side, axis=2)).sum(axis=1)
-        far = BEYOND + 1.5 * self.radius * float(np.max(np.array(texels) / self.size))
-        return np.asarray(np.minimum(far * around / np.maximum(area, 1e-9), 2.0))
+
+def _larger(at: Floats, far: float) -> Floats:
+    """Triangles (t, 3, 2) whose sides have moved outwards so far."""
+    side = np.roll(at, -1, axis=1) - at
+    doubled_area = np.abs(side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0])
+    around = np.sqrt(np.sum(side * side, axis=2)).sum(axis=1)
+    by = np.minimum(far * around / np.maximum(doubled_area, 1e-9), MOST_LARGER)[:, None, None]
+    middle = at.mean(axis=1, keepdims=True)
+    return np.asarray(at + by * (at - middle))
 
 
 def worn_shape(actor: Actor, loops: list[Slots], radius: float) -> Shape:
@@ -131,12 +137,12 @@ def round_of(actor: Actor, there: NDArray[np.bool_]) -> tuple[Slots, list[Slots]
     return triangles, [actor.slots[loop]]
 
 
-def _parted(weight: Floats, at: Floats) -> tuple[Slots, Floats]:
-    """Even parts of triangles, whose corners have weights (t, 3, 3) of places (t, 3, 2) [texels], so many that each
-    fits into a sheet: of which triangle (k,), and the weights (k, 3, 3) of their corners."""
-    wide = float(np.max(np.ptp(weight @ at, axis=1), initial=1.0))
+def _parted(at: Floats) -> tuple[Slots, Floats]:
+    """Even parts of triangles (t, 3, 2) [texels], so many that each fits into a sheet: of which triangle (k,) they are,
+    and as weights (k, 3, 3) of its corners."""
+    wide = float(np.max(np.ptp(at, axis=1), initial=1.0))
     parts = _parts_of(int(np.ceil(wide / WIDEST_CELL)))
-    return np.repeat(np.arange(len(at)), len(parts)), (parts[None] @ weight[:, None]).reshape(-1, 3, 3)
+    return np.repeat(np.arange(len(at)), len(parts)), np.tile(parts, (len(at), 1, 1))
 
 
 def _parts_of(count: int) -> Floats:
