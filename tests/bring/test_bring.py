@@ -11,8 +11,9 @@ from sandbox.bring.bring import bring
 from sandbox.bring.making import with_floor
 from sandbox.cli import main
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.picture import check_picture
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.reading.files import parse_level, read_level
+from sandbox.level.reading.files import parse_level, read_level, write_level
 from sandbox.session.session import Session
 from tests.support.foreign_files import SVG, TMX, png, rube, samples, tiled
 
@@ -127,6 +128,27 @@ def test_a_picture_gives_outlines_holes_and_mean_colours(tmp_path):
     assert ring.look.colour == "#C82828" and box.look.colour == "#28B450"
     left, bottom, right, top = extent(level)
     assert right - left == pytest.approx(10.0, rel=0.02) and top - bottom == pytest.approx(10.0 * 300 / 570, rel=0.03)
+
+
+def test_what_is_made_of_a_picture_wears_its_part_of_it(tmp_path):
+    found = brought(tmp_path, png(), "a.png")
+    assert found.left_out == []
+    write_level(found.level, tmp_path / "a.json")
+    worn = [Image.open(tmp_path / f"{name}-skin.png") for name in ("a", "a-2")]
+    assert [body.look.picture for body in read_level(tmp_path / "a.json").bodies] == ["a-skin.png", "a-2-skin.png"]
+    # Each as large as its part, and painted where it was transparent, up to its corners.
+    assert np.allclose([picture.size for picture in worn], [(300, 300), (180, 200)], atol=6)
+    for picture, colour in zip(worn, [(200, 40, 40), (40, 180, 80)], strict=True):
+        assert np.abs(np.asarray(picture).astype(int) - colour).max() <= 2
+
+
+def test_a_large_picture_is_made_smaller_until_it_can_be_worn(tmp_path):
+    noise = np.random.default_rng(1).integers(0, 256, (1200, 2400, 4), dtype=np.uint8)
+    noise[:, :, 3] = 255
+    noise[:20, :, 3] = 0
+    Image.fromarray(noise).save(held := io.BytesIO(), "PNG")
+    (body,) = brought(tmp_path, held.getvalue(), "a.png").level.bodies
+    check_picture(body.look.picture.data)
 
 
 def test_a_picture_without_transparency_says_what_to_do(tmp_path):
