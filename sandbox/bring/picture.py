@@ -1,6 +1,7 @@
 """Reads the outline of a picture with transparency: what is opaque is inside; and cuts out what a body of it wears."""
 
 import io
+import math
 import warnings
 from typing import Any
 
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from sandbox.bring.sketch import FilledShape, Pixels, Ring, Sketch, Unreadable, area_of
 from sandbox.level.format.picture import PICTURE_LIMIT, SIDE_LIMIT
 
+Layer = list[NDArray[np.float32]]
+
 PIXEL_LIMIT = 16 * 1024 * 1024
 # Outlines are looked for in a picture made smaller to this many pixels a side: finer ones no mesh would show.
 LOOKED_AT = 512
@@ -18,8 +21,8 @@ OPAQUE = 0.5
 PIECE_LIMIT = 300
 # Fewer pixels than these are dust of a scan.
 SMALLEST = 12
-# A picture whose file would be too large is made smaller by this, again and again.
-SMALLER = 0.8
+# A picture whose file would be too large is made smaller by this at least, again and again.
+SMALLER = 0.95
 
 
 def read_picture(data: bytes) -> Sketch:
@@ -55,38 +58,35 @@ def cut_out(picture: Pixels, box: tuple[float, float, float, float]) -> bytes:
     first, last = np.clip(edges[:2], 0, wide)
     upper, lower = np.clip(high - edges[:1:-1], 0, high)
     across, down = max(last - first, 1e-3), max(lower - upper, 1e-3)
-    whole, share = Image.fromarray(_opaque(picture.pixels)), min(1.0, SIDE_LIMIT / max(across, down))
+    whole, share = Image.fromarray(picture.pixels), min(1.0, SIDE_LIMIT / max(across, down))
     while True:
         size = max(1, round(across * share)), max(1, round(down * share))
-        made = whole.resize(size, Image.Resampling.BICUBIC, box=(first, upper, first + across, upper + down))
-        made.save(file := io.BytesIO(), "PNG", optimize=True)
+        part = whole.resize(size, Image.Resampling.BICUBIC, box=(first, upper, first + across, upper + down))
+        Image.fromarray(_opaque(np.asarray(part))).save(file := io.BytesIO(), "PNG", optimize=True)
         if file.tell() <= PICTURE_LIMIT:
             return file.getvalue()
-        share *= SMALLER
+        share *= min(SMALLER, math.sqrt(PICTURE_LIMIT / file.tell()))
 
 
 def _opaque(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """The colours (h, w, 3) of pixels; where these are transparent, those around, the nearer the more."""
     from PIL import Image
 
-    alpha = pixels[:, :, 3:] / np.float32(255.0)
-    weighted = np.concatenate([pixels[:, :, :3] * alpha, alpha], axis=2)
-    high, wide = alpha.shape[:2]
-    found, size = np.zeros_like(weighted), (wide, high)
-    layers = []
-    while max(size) > 1:
-        layers.append(size)
-        size = (size[0] + 1) // 2, (size[1] + 1) // 2
-    for size in [*reversed(layers)]:
-        # The coarsest first; finer ones lie over it as far as they are opaque.
-        planes = [
-            Image.fromarray(np.ascontiguousarray(weighted[:, :, k])).resize(size, Image.Resampling.BOX)
-            for k in range(4)
-        ]
-        near = np.stack([np.asarray(plane.resize((wide, high), Image.Resampling.BILINEAR)) for plane in planes], axis=2)
-        found = near + found * (1.0 - near[:, :, 3:])
-    found = found[:, :, :3] / np.maximum(found[:, :, 3:], 1e-6)
-    return np.asarray(np.clip(np.round(found), 0, 255), dtype=np.uint8)
+    def resized(planes: Layer, size: tuple[int, int], how: Image.Resampling) -> Layer:
+        return [np.asarray(Image.fromarray(plane).resize(size, how)) for plane in planes]
+
+    alpha = pixels[:, :, 3] / np.float32(255.0)
+    # Each layer half as large as the one before, the colours weighted by how opaque they are.
+    layers: list[Layer] = [[*(pixels[:, :, k] * alpha for k in range(3)), alpha]]
+    while max(layers[-1][3].shape) > 1:
+        high, wide = layers[-1][3].shape
+        layers.append(resized(layers[-1], ((wide + 1) // 2, (high + 1) // 2), Image.Resampling.BOX))
+    found = layers.pop()
+    for layer in reversed(layers):
+        around = resized(found, layer[3].shape[::-1], Image.Resampling.BILINEAR)
+        found = [own + far * (1.0 - layer[3]) for own, far in zip(layer, around, strict=True)]
+    colours = np.stack(found[:3], axis=2) / np.maximum(found[3], 1e-6)[:, :, None]
+    return np.asarray(np.clip(np.round(colours), 0, 255), dtype=np.uint8)
 
 
 def _pixels(data: bytes) -> tuple[NDArray[np.uint8], tuple[NDArray[np.float64], NDArray[np.float64]]]:
