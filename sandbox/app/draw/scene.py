@@ -195,8 +195,7 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
             made["spot"] = [round(float(value), DIGITS) for value in (*place, face_radius)]
             made["face"] = look.face and look.skin in SOFT_SKINS
     elif look.picture is not None and (around := round_of(actor, there)) is not None:
-        fan, loops = around
-        made["shapes"], made["fan"] = [_shape(worn_shape(actor, loops, radius))], actor.slots[fan].reshape(-1).tolist()
+        made["shapes"], made["is_fan"] = [_shape(worn_shape(actor, around[1], radius))], True
         made["needs"] = _closed(actor)
     elif actor.body.type == "ring":
         made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], _closed(actor)

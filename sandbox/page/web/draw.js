@@ -7,11 +7,11 @@ import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 import { drawTread } from './treads.js';
 import { Water } from './water.js';
-import { drawWorn, unpacked } from './worn.js';
+import { drawWorn, unpacked, withMiddle } from './worn.js';
 /** @import { StateArrays } from './tables.js' */
 /**
  * @import { Ball, Bars, Body, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
- *   Wheel, Working } from './types.js'
+ *   Wheel, Working, Worn } from './types.js'
  */
 /** @import { World } from './world.js' */
 
@@ -136,7 +136,7 @@ export class Picture {
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
     things.worn.forEach((worn) => {
-      if (!worn.texels.length) worn.texels = this.#places(worn.body, worn.triangles);
+      if (!worn.texels.length) worn.texels = this.#places(worn);
       drawWorn(context, worn, this.#worn.get(worn.body.picture ?? ''), this.at, worn.shape.grown * camera.zoom);
     });
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
@@ -431,12 +431,12 @@ export class Picture {
   }
 
   /** Where they lie in a picture that a body wears, 0..1 to the right and down.
-   * @type {(body: Body, triangles: number[][]) => number[][]} */
-  #places(body, triangles) {
+   * @type {(worn: Worn) => number[][]} */
+  #places({ body, triangles, loops }) {
     const { turned, box: [left, top, right, low] } = this.#formOf(body);
     const place = (/** @type {number} */ value, /** @type {number} */ k) =>
       (k % 2 ? (value - top) / (low - top || 1) : (value - left) / (right - left || 1));
-    return triangles.map((corners) => corners.flatMap(turned).map(place));
+    return triangles.map((corners) => corners.flatMap(withMiddle(turned, loops)).map(place));
   }
 
   /** Where particles of a body were before it was turned [m], y downwards, and the box around all of them.

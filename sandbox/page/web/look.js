@@ -18,7 +18,7 @@ const PARTS = {
     springs: 'count', segments: 'count or null', shapes: [SHAPE], needs: ['spring'], 'triangles?': ['particle'],
     'keeps_area?': 'flag', 'spacing?': 'number', 'spot?': ['number', 'number', 'number'], 'face?': 'flag',
     'knots?': ['particle'], 'wheel?': { hub: 'particle', radius: 'number', is_tyre: 'flag', inner: ['particle'],
-      outer: ['particle'], spokes: ['particle'] }, 'picture?': 'file', 'fan?': ['particle'] }],
+      outer: ['particle'], spokes: ['particle'] }, 'picture?': 'file', 'is_fan?': 'flag' }],
   joins: [{ ...LOOK, spring: 'spring' }],
   balls: [{ slot: 'particle', kind: 'name', colour: 'colour or null' }],
 };

@@ -85,8 +85,11 @@ function addBody(things, body, now) {
   else if (body.shapes.length && body.needs.every((spring) => active[spring])) {
     const shapes = body.shapes.map((shape) => ({ ...shape, springs, cell: body.cell, ...untraced() }));
     things.shapes.push(...shapes);
-    if (body.fan) things.worn.push({ body, shape: shapes[0], triangles: threes(body.fan), loops: shapes[0].loops, texels: [] });
-    if (body.skin === 'balloon' && !body.fan) things.balloons.push({ ...body, knots: body.knots ?? [] });
+    if (body.is_fan) {
+      const [shape] = shapes, { loops: [loop] } = shape, triangles = loop.map((slot, k) => [-1, slot, loop[(k + 1) % loop.length]]);
+      things.worn.push({ body, shape, triangles, loops: [loop], texels: [] });
+    }
+    if (body.skin === 'balloon' && !body.is_fan) things.balloons.push({ ...body, knots: body.knots ?? [] });
     if (body.wheel) things.wheels.push(body.wheel);
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
 }
@@ -137,10 +140,6 @@ function addFilled(things, body, springs, { scene, world, active, whole }) {
   }
   addLines(things, body, springs.filter(([spring]) => !inside.has(spring)), THREADS);
 }
-
-/** A list of corners as triangles.
- * @type {(corners: number[]) => number[][]} */
-const threes = (corners) => Array.from({ length: corners.length / 3 }, (_, k) => corners.slice(3 * k, 3 * k + 3));
 
 /** The look of a shape with its colour alone.
  * @type {(shape: SceneShape, scene: Unfolded) => SkinLook} */

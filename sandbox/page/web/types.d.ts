@@ -391,7 +391,7 @@ export interface SceneBody extends SceneLook {
   knots?: number[];
   wheel?: Wheel;
   picture?: string;
-  fan?: number[];
+  is_fan?: boolean;
 }
 
 export interface Join extends SceneLook {
@@ -687,7 +687,8 @@ export interface Sheet {
   parts?: SheetPart[];
 }
 
-// A picture that a part of a body wears; texels: corners of its triangles, 0..1 to the right and down.
+// A picture that a part of a body wears; texels: corners of its triangles, 0..1 to the right and down. The slot -1 is the
+// middle of the first loop.
 export interface Worn {
   body: Body;
   shape: Shape;

@@ -55,6 +55,14 @@ function filling({ image, over }, colour) {
   return made ?? null;
 }
 
+/** Places of slots, where -1 is the middle of the first of these loops.
+ * @type {(placeOf: (slot: number) => number[], loops: number[][]) => (slot: number) => number[]} */
+export function withMiddle(placeOf, [loop]) {
+  const places = loop.map(placeOf), middle = [0, 1].map((axis) =>
+    places.reduce((sum, place) => sum + place[axis], 0) / places.length);
+  return (slot) => (slot < 0 ? middle : placeOf(slot));
+}
+
 /** Draw what a body wears; at: places on the page by slot, reach: how far its outline lies beyond its particles [pixels].
  * @type {(context: CanvasRenderingContext2D, worn: Worn, picture: WornPicture | undefined, at: Numbers,
  *   reach: number) => void} */
@@ -65,6 +73,7 @@ export function drawWorn(context, { body: { colour }, shape, triangles, texels, 
     context.fill(shape.path, 'evenodd');
     return;
   }
+  const placeOf = withMiddle((slot) => [at[2 * slot], at[2 * slot + 1]], loops);
   context.save();
   context.clip(shape.path, 'evenodd');
   context.fillStyle = pattern;
@@ -72,7 +81,7 @@ export function drawWorn(context, { body: { colour }, shape, triangles, texels, 
   for (const isRim of [true, false]) {
     triangles.forEach((slots, k) => {
       if (isRim && slots.filter((slot) => rim.has(slot)).length < 2) return;
-      const points = slots.flatMap((slot) => [at[2 * slot], at[2 * slot + 1]]);
+      const points = slots.flatMap(placeOf);
       fillTriangle(context, points, texels[k], isRim ? larger(points, reach + BEYOND) : SEAM);
       context.setTransform(before);
     });

@@ -40,12 +40,14 @@ MOST_BYTES = 128 * 1024 * 1024
 class Worn:
     """A picture on triangles (t, 3) of slots, whose corners have places (t, 3, 2) in it, 0..1 to the right and down.
 
-    rim (t,): which lie at the outline. size (2,) [m] of what wears it; radius [m] of its particles.
+    around (k,): slots whose middle is the slot -1 of triangles. rim (t,): which lie at the outline. size (2,) [m] of
+    what wears it; radius [m] of its particles.
     """
 
     picture: Picture
     colour: int
     corners: Slots
+    around: Slots
     place: Floats
     rim: NDArray[np.bool_]
     size: Floats
@@ -54,14 +56,18 @@ class Worn:
 
     @classmethod
     def on(cls, actor: Actor, triangles: Slots, loops: list[Slots], radius: float) -> "Worn":
-        """The picture of a body on triangles (t, 3) of indices of its particles, inside loops of slots."""
+        """The picture of a body on triangles (t, 3) of indices of its particles, inside loops of slots.
+
+        -1 is the middle of all particles that they have.
+        """
         form, low, size = _upright(actor)
         place = (form - low) / size * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
-        picture, corners = actor.look.picture, actor.slots[triangles]
+        picture, own = actor.look.picture, np.unique(triangles[triangles >= 0])
         assert picture is not None
-        around = np.concatenate(loops) if loops else np.zeros(0, dtype=np.int64)
-        rim = np.isin(corners, around).sum(axis=1) > 1
-        return cls(picture, actor.look.colour, corners, place[triangles], rim, size, radius)
+        place = np.concatenate([place, place[own].mean(axis=0, keepdims=True)])
+        corners = np.where(triangles < 0, -1, actor.slots[triangles])
+        rim = np.isin(corners, np.concatenate(loops)).sum(axis=1) > 1
+        return cls(picture, actor.look.colour, corners, actor.slots[own], place[triangles], rim, size, radius)
 
     def cells(self, frame: Frame) -> tuple[CellArrays, Slots]:
         """The triangles of a frame, and the sheets that they are of."""
@@ -70,7 +76,8 @@ class Worn:
         if self._laid is None or self._laid[0] != texels:
             self._laid = texels, *self._lay(texels, columns)
         _, whole, weight, cells = self._laid
-        corner = np.nan_to_num(frame.at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
+        at = np.concatenate([frame.at, frame.at[self.around].mean(axis=0, keepdims=True)])
+        corner = np.nan_to_num(at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
         rows = np.concatenate([_larger(corner[self.rim], self._beyond(frame.zoom)), corner])
         return cells._replace(corner=(weight @ rows[whole]).reshape(-1, 6)), sheets
 
@@ -89,7 +96,8 @@ class Worn:
         whole, weight = np.concatenate([whole, others + len(larger)]), np.concatenate([weight, exact])
         texel = weight @ np.concatenate([larger, place])[whole]
         tile = np.clip(np.floor(texel.min(axis=1) / STRIDE).astype(np.int64) + 1, 0, _grid(texels)[::-1] - 1)
-        texel = texel - ((tile - 1) * STRIDE - 1)[:, None]
+        # Beyond the sheets there is more of what is at the edge.
+        texel = np.clip(texel - ((tile - 1) * STRIDE - 1)[:, None], 0.5, SHEET - 0.5)
         shade = np.zeros((len(texel), 3))
         return whole, weight, CellArrays(shade, texel.reshape(-1, 6), shade, tile[:, 1] * columns + tile[:, 0])
 
@@ -118,23 +126,18 @@ def _upright(actor: Actor) -> tuple[Floats, Floats, Floats]:
 
 
 def round_of(actor: Actor, there: NDArray[np.bool_]) -> tuple[Slots, list[Slots]] | None:
-    """Triangles (t, 3) of indices that fill a ring or a wheel, and the loop of slots around them.
+    """Triangles (t, 3) about the middle that fill a ring or a wheel, as `Worn.on` takes them, and the loop around them.
 
     None of any other body, and of one that is torn, of whose springs some are there (m,).
     """
     count = len(actor.slots)
     if actor.body.type == "wheel" and DrawnWheel.is_whole(actor, there):
         loop = np.arange((count + 1) // 2, count)
-        triangles = np.stack([np.zeros_like(loop), loop, np.roll(loop, -1)], axis=1)
     elif actor.body.type == "ring" and there.all() and len(there) == count:
         loop = np.arange(count)
-        # From side to side, so that they are about as even as the loop allows.
-        order = np.empty_like(loop)
-        order[0::2], order[1::2] = loop[: (len(loop) + 1) // 2], loop[: (len(loop) - 1) // 2 : -1]
-        triangles = np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
     else:
         return None
-    return triangles, [actor.slots[loop]]
+    return np.stack([np.full_like(loop, -1), loop, np.roll(loop, -1)], axis=1), [actor.slots[loop]]
 
 
 def _parted(at: Floats) -> tuple[Slots, Floats]:
