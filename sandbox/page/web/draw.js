@@ -7,7 +7,7 @@ import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 import { drawTread } from './treads.js';
 import { Water } from './water.js';
-import { drawWorn, unpacked, withMiddle } from './worn.js';
+import { bandOf, drawWorn, RIM, unpacked, withMiddle } from './worn.js';
 /** @import { StateArrays } from './tables.js' */
 /**
  * @import { Ball, Bars, Body, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
@@ -137,7 +137,7 @@ export class Picture {
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
     things.worn.forEach((worn) => {
       if (!worn.texels.length) worn.texels = this.#places(worn);
-      drawWorn(context, worn, this.#worn.get(worn.body.picture ?? ''), this.at, worn.shape.grown * camera.zoom);
+      drawWorn(context, worn, this.#worn.get(worn.body.picture ?? ''), this.at, camera.zoom);
     });
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
     things.balloons.forEach((body) => this.#drawGleams(body));
@@ -436,7 +436,8 @@ export class Picture {
     const { turned, box: [left, top, right, low] } = this.#formOf(body);
     const place = (/** @type {number} */ value, /** @type {number} */ k) =>
       (k % 2 ? (value - top) / (low - top || 1) : (value - left) / (right - left || 1));
-    return triangles.map((corners) => corners.flatMap(withMiddle(turned, loops)).map(place));
+    const band = bandOf(loops.map((loop) => loop.flatMap(turned)), RIM * (low - top));
+    return [...band, ...triangles.map((corners) => corners.flatMap(withMiddle(turned, loops)))].map((each) => each.map(place));
   }
 
   /** Where particles of a body were before it was turned [m], y downwards, and the box around all of them.

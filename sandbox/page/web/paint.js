@@ -583,12 +583,12 @@ function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
   context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
 }
 
-/** Fill a triangle, by so much of itself larger, of the picture that the context fills with.
- * @type {(context: CanvasRenderingContext2D, points: number[], texels: number[], by?: number) => void} */
-export function fillTriangle(context, points, texels, by = 0.1) {
+/** Fill a triangle of the picture that the context fills with.
+ * @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
+export function fillTriangle(context, points, texels) {
   lay(context, points, texels);
   const [u0, v0, u1, v1, u2, v2] = texels, u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
   context.beginPath();
-  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + by * (cu - u), cv + by * (cv - v));
+  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
   context.fill();
 }

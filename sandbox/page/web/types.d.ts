@@ -687,8 +687,8 @@ export interface Sheet {
   parts?: SheetPart[];
 }
 
-// A picture that a part of a body wears; texels: corners of its triangles, 0..1 to the right and down. The slot -1 is the
-// middle of the first loop.
+// A picture that a part of a body wears; texels: corners of a band around it and of its triangles, 0..1 to the right and
+// down. The slot -1 is the middle of the first loop.
 export interface Worn {
   body: Body;
   shape: Shape;

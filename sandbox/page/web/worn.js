@@ -1,11 +1,13 @@
 // Worn: pictures that bodies wear, each cut to its outline.
-import { canvasOf, fillTriangle, tiled } from './paint.js';
+import { canvasOf, fillTriangle, grown, tiled } from './paint.js';
 /** @import { Numbers, Scene, Worn, WornPicture } from './types.js' */
 
 // Texels of a side at most, and how far a picture goes on beyond its edges, as a part of itself.
 const MOST = 1024, EDGE = 0.05;
-// How much larger triangles are drawn, so that no seam shows; how far beyond the outline those at it reach [pixels].
-const SEAM = 0.1, BEYOND = 1.5, LARGEST = 2;
+// How far a picture goes on beyond the particles at the rim [pixels], beside so many of their radii.
+const BEYOND = 3, ROOM = 1.5;
+/** How much of the height of a picture that shows. */
+export const RIM = 0.02;
 
 /** By their text.
  * @type {Map<string, WornPicture>} */
@@ -63,36 +65,36 @@ export function withMiddle(placeOf, [loop]) {
   return (slot) => (slot < 0 ? middle : placeOf(slot));
 }
 
-/** Draw what a body wears; at: places on the page by slot, reach: how far its outline lies beyond its particles [pixels].
+/** Triangles [x, y, ...] in a band around each of these loops of places, so wide.
+ * @type {(loops: number[][], wide: number) => number[][]} */
+export const bandOf = (loops, wide) => loops.flatMap((loop) => {
+  const outer = grown(Float64Array.from(loop), wide);
+  return Array.from({ length: loop.length / 2 }, (_, k) => {
+    const [a, b] = [2 * k, (2 * k + 2) % loop.length], pair = (/** @type {Numbers} */ of, /** @type {number} */ n) => [of[n], of[n + 1]];
+    return [[...pair(loop, a), ...pair(loop, b), ...pair(outer, b)], [...pair(loop, a), ...pair(outer, b), ...pair(outer, a)]];
+  }).flat();
+});
+
+/** Draw what a body wears; at: places on the page by slot, zoom: pixels of a metre.
  * @type {(context: CanvasRenderingContext2D, worn: Worn, picture: WornPicture | undefined, at: Numbers,
- *   reach: number) => void} */
-export function drawWorn(context, { body: { colour }, shape, triangles, texels, loops }, picture, at, reach) {
-  const pattern = picture && filling(picture, colour), rim = new Set(loops.flat()), before = context.getTransform();
+ *   zoom: number) => void} */
+export function drawWorn(context, { body: { colour }, shape, triangles, texels, loops }, picture, at, zoom) {
+  const pattern = picture && filling(picture, colour), before = context.getTransform();
   if (!pattern) {
     context.fillStyle = colour;
     context.fill(shape.path, 'evenodd');
     return;
   }
-  const placeOf = withMiddle((slot) => [at[2 * slot], at[2 * slot + 1]], loops);
+  const place = (/** @type {number} */ slot) => [at[2 * slot], at[2 * slot + 1]], placeOf = withMiddle(place, loops);
+  const band = bandOf(loops.map((loop) => loop.flatMap(place)), ROOM * shape.grown * zoom + BEYOND);
   context.save();
   context.clip(shape.path, 'evenodd');
   context.fillStyle = pattern;
   context.imageSmoothingQuality = 'high';
-  for (const isRim of [true, false]) {
-    triangles.forEach((slots, k) => {
-      if (isRim && slots.filter((slot) => rim.has(slot)).length < 2) return;
-      const points = slots.flatMap(placeOf);
-      fillTriangle(context, points, texels[k], isRim ? larger(points, reach + BEYOND) : SEAM);
-      context.setTransform(before);
-    });
-  }
+  // The band comes first, as triangles are drawn a little larger than they are.
+  [...band, ...triangles.map((slots) => slots.flatMap(placeOf))].forEach((points, k) => {
+    fillTriangle(context, points, texels[k]);
+    context.setTransform(before);
+  });
   context.restore();
-}
-
-/** By how much of itself a triangle grows when its sides move outwards so far.
- * @type {(points: number[], far: number) => number} */
-function larger([x0, y0, x1, y1, x2, y2], far) {
-  const area = Math.abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0));
-  const around = Math.hypot(x1 - x0, y1 - y0) + Math.hypot(x2 - x1, y2 - y1) + Math.hypot(x0 - x2, y0 - y2);
-  return Math.min((far * around) / (area || 1), LARGEST);
 }

@@ -4,6 +4,8 @@ import contextlib
 import io
 from collections import OrderedDict
 from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import pygame
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.colours import unpacked
 from sandbox.app.draw.raster.mark_kernels import SHEET, CellArrays
-from sandbox.app.draw.things.level_slots import Actor, Frame
+from sandbox.app.draw.things.level_slots import Actor, Frame, starts_of
 from sandbox.app.draw.things.soft import FLAT, Shape, keep_of
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.format.picture import Picture, size_of
@@ -29,19 +31,47 @@ MOST_TEXELS, FEWEST_TEXELS = 1024, 32
 # By what power of two it is finer than the pixels it is drawn on, at least; it shows no more than half of its texels
 # could, so that it is smooth though each pixel takes one texel.
 FINER = 0.3
-# How far triangles at the outline reach beyond it [pixels], beside so many radii of particles; and how much larger they
-# become at most.
-BEYOND, ROOM, MOST_LARGER = 3.0, 1.5, 3.0
+# How far a picture goes on beyond the particles at its rim [pixels], beside so many of their radii.
+BEYOND, ROOM = 3.0, 1.5
 # Bytes of all sheets that are kept, those used last.
 MOST_BYTES = 128 * 1024 * 1024
+
+
+class Rim(NamedTuple):
+    """The outline of a part of a body: slots (k,) and places (k, 2) of particles, and which comes before and after."""
+
+    slots: Slots
+    place: Floats
+    before: Slots
+    after: Slots
+
+    @classmethod
+    def of(cls, loops: list[Slots], slots: Slots, place: Floats) -> "Rim":
+        """The outline of loops, whose slots (k,) these are, one after the other."""
+        starts = starts_of([len(loop) for loop in loops])
+        rows = [np.arange(first, last) for first, last in pairwise(starts.tolist())]
+        before, after = (np.concatenate([np.roll(row, by) for row in rows]) for by in (1, -1))
+        return cls(slots, place, before, after)
+
+    def band(self, at: Floats, far: float) -> Floats:
+        """Triangles (2 k, 3, 2) that lie around places (k, 2) of it, so far outwards; y points down."""
+        along = at[self.after] - at[self.before]
+        length = np.maximum(np.sqrt(np.sum(along * along, axis=1, keepdims=True)), 1e-9)
+        outer = at + far * np.stack([-along[:, 1], along[:, 0]], axis=1) / length
+        return np.concatenate(
+            [
+                np.stack([at, at[self.after], outer[self.after]], axis=1),
+                np.stack([at, outer[self.after], outer], axis=1),
+            ]
+        )
 
 
 @dataclass(eq=False)
 class Worn:
     """A picture on triangles (t, 3) of slots, whose corners have places (t, 3, 2) in it, 0..1 to the right and down.
 
-    around (k,): slots whose middle is the slot -1 of triangles. rim (t,): which lie at the outline. size (2,) [m] of
-    what wears it; radius [m] of its particles.
+    around (k,): slots whose middle is the slot -1 of triangles. rim: places of particles at the outline, counter-clockwise
+    and around holes clockwise. size (2,) [m] of what wears it; radius [m] of its particles.
     """
 
     picture: Picture
@@ -49,7 +79,7 @@ class Worn:
     corners: Slots
     around: Slots
     place: Floats
-    rim: NDArray[np.bool_]
+    rim: Rim
     size: Floats
     radius: float
     _laid: tuple[tuple[int, int], Slots, Floats, CellArrays] | None = field(default=None, init=False)
@@ -66,7 +96,9 @@ class Worn:
         assert picture is not None
         place = np.concatenate([place, place[own].mean(axis=0, keepdims=True)])
         corners = np.where(triangles < 0, -1, actor.slots[triangles])
-        rim = np.isin(corners, np.concatenate(loops)).sum(axis=1) > 1
+        order = np.argsort(actor.slots, kind="stable")
+        slots = np.concatenate(loops)
+        rim = Rim.of(loops, slots, place[order[np.searchsorted(actor.slots[order], slots)]])
         return cls(picture, actor.look.colour, corners, actor.slots[own], place[triangles], rim, size, radius)
 
     def cells(self, frame: Frame) -> tuple[CellArrays, Slots]:
@@ -78,38 +110,30 @@ class Worn:
         _, whole, weight, cells = self._laid
         at = np.concatenate([frame.at, frame.at[self.around].mean(axis=0, keepdims=True)])
         corner = np.nan_to_num(at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
-        rows = np.concatenate([_larger(corner[self.rim], self._beyond(frame.zoom)), corner])
+        edge = np.nan_to_num(frame.at[self.rim.slots], nan=1e9, posinf=1e9, neginf=-1e9)
+        rows = np.concatenate([corner, self.rim.band(edge, self._beyond(frame.zoom))])
         return cells._replace(corner=(weight @ rows[whole]).reshape(-1, 6)), sheets
 
     def _beyond(self, scale: float) -> float:
-        """How far triangles at the outline reach beyond it, of as many pixels or texels a metre."""
+        """How far the picture goes on beyond particles at the outline, of as many pixels or texels a metre."""
         return BEYOND + ROOM * self.radius * scale
 
     def _lay(self, texels: tuple[int, int], columns: int) -> tuple[Slots, Floats, CellArrays]:
         """Parts of triangles: of which (k,), as weights (k, 3, 3) of its corners, and where they lie in the sheets.
 
-        First come triangles at the outline made larger, as what is drawn reaches as far as the outline there.
+        Last comes a band around them, as what is drawn reaches as far as the outline.
         """
         place = self.place * np.array(texels)
-        larger = _larger(place[self.rim], self._beyond(float(np.max(np.array(texels) / self.size))))
-        (whole, weight), (others, exact) = _parted(larger), _parted(place)
-        whole, weight = np.concatenate([whole, others + len(larger)]), np.concatenate([weight, exact])
-        texel = weight @ np.concatenate([larger, place])[whole]
+        scale = np.array(texels) / self.size
+        band = self.rim.band(self.rim.place * np.array(texels), self._beyond(float(np.max(scale))))
+        (whole, weight), (beyond, narrow) = _parted(place), _parted(band)
+        whole, weight = np.concatenate([whole, beyond + len(place)]), np.concatenate([weight, narrow])
+        texel = weight @ np.concatenate([place, band])[whole]
         tile = np.clip(np.floor(texel.min(axis=1) / STRIDE).astype(np.int64) + 1, 0, _grid(texels)[::-1] - 1)
         # Beyond the sheets there is more of what is at the edge.
         texel = np.clip(texel - ((tile - 1) * STRIDE - 1)[:, None], 0.5, SHEET - 0.5)
         shade = np.zeros((len(texel), 3))
         return whole, weight, CellArrays(shade, texel.reshape(-1, 6), shade, tile[:, 1] * columns + tile[:, 0])
-
-
-def _larger(at: Floats, far: float) -> Floats:
-    """Triangles (t, 3, 2) whose sides have moved outwards so far."""
-    side = np.roll(at, -1, axis=1) - at
-    doubled_area = np.abs(side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0])
-    around = np.sqrt(np.sum(side * side, axis=2)).sum(axis=1)
-    by = np.minimum(far * around / np.maximum(doubled_area, 1e-9), MOST_LARGER)[:, None, None]
-    middle = at.mean(axis=1, keepdims=True)
-    return np.asarray(at + by * (at - middle))
 
 
 def worn_shape(actor: Actor, loops: list[Slots], radius: float) -> Shape:
