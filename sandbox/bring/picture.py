@@ -75,9 +75,10 @@ def _opaque(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     def resized(planes: Layer, size: tuple[int, int], how: Image.Resampling) -> Layer:
         return [np.asarray(Image.fromarray(plane).resize(size, how)) for plane in planes]
 
-    alpha = pixels[:, :, 3] / np.float32(255.0)
+    alpha = np.asarray(pixels[:, :, 3] / 255.0, dtype=np.float32)
     # Each layer half as large as the one before, the colours weighted by how opaque they are.
-    layers: list[Layer] = [[*(pixels[:, :, k] * alpha for k in range(3)), alpha]]
+    weighted = [np.asarray(pixels[:, :, k] * alpha, dtype=np.float32) for k in range(3)]
+    layers: list[Layer] = [[*weighted, alpha]]
     while max(layers[-1][3].shape) > 1:
         high, wide = layers[-1][3].shape
         layers.append(resized(layers[-1], ((wide + 1) // 2, (high + 1) // 2), Image.Resampling.BOX))

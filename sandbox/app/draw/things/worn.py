@@ -33,6 +33,8 @@ MOST_TEXELS, FEWEST_TEXELS = 1024, 32
 FINER = 0.3
 # How far a picture goes on beyond the particles at its rim [pixels], beside so many of their radii.
 BEYOND, ROOM = 3.0, 1.5
+# Corners lie on so many places of a pixel; where one place ends and the next begins, few corners lie by themselves.
+SNAP, SNAP_FROM = 1024.0, 0.37
 # Bytes of all sheets that are kept, those used last.
 MOST_BYTES = 128 * 1024 * 1024
 
@@ -70,8 +72,8 @@ class Rim(NamedTuple):
 class Worn:
     """A picture on triangles (t, 3) of slots, whose corners have places (t, 3, 2) in it, 0..1 to the right and down.
 
-    around (k,): slots whose middle is the slot -1 of triangles. rim: places of particles at the outline, counter-clockwise
-    and around holes clockwise. size (2,) [m] of what wears it; radius [m] of its particles.
+    around (k,): slots whose middle is the slot -1 of triangles. rim: places of particles at the outline, which runs
+    anticlockwise, and around holes the other way. size (2,) [m] of what wears it; radius [m] of its particles.
     """
 
     picture: Picture
@@ -112,7 +114,9 @@ class Worn:
         corner = np.nan_to_num(at[self.corners], nan=1e9, posinf=1e9, neginf=-1e9)
         edge = np.nan_to_num(frame.at[self.rim.slots], nan=1e9, posinf=1e9, neginf=-1e9)
         rows = np.concatenate([corner, self.rim.band(edge, self._beyond(frame.zoom))])
-        return cells._replace(corner=(weight @ rows[whole]).reshape(-1, 6)), sheets
+        # Parts of two triangles that share a corner have it at the same place, or pixels would be left between them.
+        corner = np.floor((weight @ rows[whole]) * SNAP + SNAP_FROM) / SNAP
+        return cells._replace(corner=corner.reshape(-1, 6)), sheets
 
     def _beyond(self, scale: float) -> float:
         """How far the picture goes on beyond particles at the outline, of as many pixels or texels a metre."""
