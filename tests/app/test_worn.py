@@ -12,6 +12,7 @@ from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import read_level
 from sandbox.level.reading.pictures import pictures_of
+from sandbox.physics.analysis.query import shares_crossed, springs_crossing
 from sandbox.physics.snapshot import take
 from sandbox.session.commands import CutSprings
 from sandbox.session.session import Session
@@ -79,6 +80,17 @@ def test_pieces_of_a_cut_body_keep_their_parts_of_the_picture(tmp_path):
     places = [(x + 0.5, y + 1.0) if x > 0 else (x, y) for x, y in MIDDLES]
     assert colours_at(level, parted, places) == list(MIDDLES.values())
     assert colours_at(level, parted, [(0.5, 0.0)])[0] not in MIDDLES.values()
+
+
+def test_a_clean_cut_leaves_the_picture_where_it_was(tmp_path):
+    level = read_level(level_file(tmp_path, box(spacing=0.5)))
+    session, stroke = Session(level), ((-1.8, 1.5), (1.3, -1.5))
+    springs = springs_crossing(session.world, *stroke)
+    shares = shares_crossed(session.world, springs, *stroke)
+    session.submit(CutSprings(tuple(springs.tolist()), tuple(shares.tolist())))
+    session.advance()
+    places = [(share * x, share * y) for share in (0.2, 0.3, 0.5) for x, y in MIDDLES]
+    assert colours_at(level, session.snapshot(), places) == 3 * list(MIDDLES.values())
 
 
 def test_where_a_picture_is_transparent_the_colour_shows(tmp_path):

@@ -7,11 +7,11 @@ import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 import { drawTread } from './treads.js';
 import { Water } from './water.js';
-import { bandOf, drawWorn, RIM, unpacked, withMiddle } from './worn.js';
+import { drawWorn, Forms, unpacked, upright } from './worn.js';
 /** @import { StateArrays } from './tables.js' */
 /**
- * @import { Ball, Bars, Body, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
- *   Wheel, Working, Worn } from './types.js'
+ * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
+ *   Wheel, Working } from './types.js'
  */
 /** @import { World } from './world.js' */
 
@@ -36,6 +36,7 @@ export class Picture {
   #world;
   #water;
   #worn;
+  #forms = new Forms();
   /** @type {Things | null} */
   #things = null;
   /** @type {Uint8Array[]} */
@@ -68,6 +69,7 @@ export class Picture {
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
     this.#worn = unpacked(scene.worn, changed);
+    this.#forms.note(this.#scene.bodies, world.view('state.origin'));
     this.#world = world;
     this.#water = new Water(scene, world);
   }
@@ -93,6 +95,7 @@ export class Picture {
     if (!things || there.some((array, n) => array.length !== this.#there[n].length || array.some((value, k) => value !== this.#there[n][k]))) {
       this.#there = there.map((array) => array.slice());
       this.#scene = unfolded(this.#whole, this.#world);
+      this.#forms.note(this.#scene.bodies, this.#state('origin'));
       things = this.#things = thingsOf(this.#scene, this.#world, this.#there[0], this.#there[1]);
     }
     things.shapes.forEach((shape) => this.#trace(shape));
@@ -136,7 +139,7 @@ export class Picture {
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
     things.worn.forEach((worn) => {
-      if (!worn.texels.length) worn.texels = this.#places(worn);
+      if (!worn.texels.length) worn.texels = this.#forms.places(worn, this.#state('origin'));
       drawWorn(context, worn, this.#worn.get(worn.body.picture ?? ''), this.at, camera.zoom);
     });
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
@@ -426,28 +429,9 @@ export class Picture {
   /** Where the corners of triangles of a body lie in its picture, so many texels to a cell.
    * @type {(body: FilledBody, triangles: number[][], texels: number) => number[][]} */
   #texels(body, triangles, texels) {
-    const { turned, box: [left, , , low] } = this.#formOf(body), by = texels / body.spacing;
+    const turned = upright(body, this.#state('origin')), by = texels / body.spacing;
+    const [left, , , low] = boxOf(body.slots.flatMap(turned));
     return triangles.map((corners) => corners.flatMap(turned).map((value, k) => by * (value - (k % 2 ? low : left))));
-  }
-
-  /** Where they lie in a picture that a body wears, 0..1 to the right and down.
-   * @type {(worn: Worn) => number[][]} */
-  #places({ body, triangles, loops }) {
-    const { turned, box: [left, top, right, low] } = this.#formOf(body);
-    const place = (/** @type {number} */ value, /** @type {number} */ k) =>
-      (k % 2 ? (value - top) / (low - top || 1) : (value - left) / (right - left || 1));
-    const band = bandOf(loops.map((loop) => loop.flatMap(turned)), RIM * (low - top));
-    return [...band, ...triangles.map((corners) => corners.flatMap(withMiddle(turned, loops)))].map((each) => each.map(place));
-  }
-
-  /** Where particles of a body were before it was turned [m], y downwards, and the box around all of them.
-   * @type {(body: Body) => { turned: (slot: number) => number[], box: Box }} */
-  #formOf({ angle, slots }) {
-    const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
-    /** @type {(slot: number) => number[]} */
-    const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
-      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine];
-    return { turned, box: boxOf(slots.flatMap(turned)) };
   }
 
   /** How large a wheel is.

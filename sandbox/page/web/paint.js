@@ -588,7 +588,9 @@ function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
 export function fillTriangle(context, points, texels) {
   lay(context, points, texels);
   const [u0, v0, u1, v1, u2, v2] = texels, u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
+  // A little larger, so that no seam shows; tips of what is narrow stay near.
+  const [left, top, right, bottom] = boxOf(points), by = Math.min(0.1, 5 / Math.hypot(right - left, bottom - top));
   context.beginPath();
-  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
+  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + by * (cu - u), cv + by * (cv - v));
   context.fill();
 }

@@ -1,13 +1,13 @@
 // Worn: pictures that bodies wear, each cut to its outline.
-import { canvasOf, fillTriangle, grown, tiled } from './paint.js';
-/** @import { Numbers, Scene, Worn, WornPicture } from './types.js' */
+import { boxOf, canvasOf, fillTriangle, grown, tiled } from './paint.js';
+/** @import { Body, Box, Numbers, Scene, Worn, WornPicture } from './types.js' */
 
 // Texels of a side at most, and how far a picture goes on beyond its edges, as a part of itself.
 const MOST = 1024, EDGE = 0.05;
 // How far a picture goes on beyond the particles at the rim [pixels], beside so many of their radii.
 const BEYOND = 3, ROOM = 1.5;
-/** How much of the height of a picture that shows. */
-export const RIM = 0.02;
+// How much of the height of a picture that shows.
+const RIM = 0.02;
 
 /** By their text.
  * @type {Map<string, WornPicture>} */
@@ -59,7 +59,7 @@ function filling({ image, over }, colour) {
 
 /** Places of slots, where -1 is the middle of the first of these loops.
  * @type {(placeOf: (slot: number) => number[], loops: number[][]) => (slot: number) => number[]} */
-export function withMiddle(placeOf, [loop]) {
+function withMiddle(placeOf, [loop]) {
   const places = loop.map(placeOf), middle = [0, 1].map((axis) =>
     places.reduce((sum, place) => sum + place[axis], 0) / places.length);
   return (slot) => (slot < 0 ? middle : placeOf(slot));
@@ -67,13 +67,46 @@ export function withMiddle(placeOf, [loop]) {
 
 /** Triangles [x, y, ...] in a band around each of these loops of places, so wide.
  * @type {(loops: number[][], wide: number) => number[][]} */
-export const bandOf = (loops, wide) => loops.flatMap((loop) => {
+const bandOf = (loops, wide) => loops.flatMap((loop) => {
   const outer = grown(Float64Array.from(loop), wide);
   return Array.from({ length: loop.length / 2 }, (_, k) => {
     const [a, b] = [2 * k, (2 * k + 2) % loop.length], pair = (/** @type {Numbers} */ of, /** @type {number} */ n) => [of[n], of[n + 1]];
     return [[...pair(loop, a), ...pair(loop, b), ...pair(outer, b)], [...pair(loop, a), ...pair(outer, b), ...pair(outer, a)]];
   }).flat();
 });
+
+/** Where particles of a body were before it was turned [m], y downwards.
+ * @type {(body: { angle: number }, origin: Numbers) => (slot: number) => number[]} */
+export function upright({ angle }, origin) {
+  const cosine = Math.cos(angle), sine = Math.sin(angle);
+  return (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
+    origin[2 * slot] * sine - origin[2 * slot + 1] * cosine];
+}
+
+/** The boxes of bodies that wear pictures, as they were before cuts moved particles. */
+export class Forms {
+  /** By the first slot.
+   * @type {Map<number, Box>} */
+  #boxes = new Map();
+
+  /** @type {(bodies: Body[], origin: Numbers) => void} */
+  note(bodies, origin) {
+    for (const body of bodies) {
+      const [first] = body.slots;
+      if (body.picture && !this.#boxes.has(first)) this.#boxes.set(first, boxOf(body.slots.flatMap(upright(body, origin))));
+    }
+  }
+
+  /** Where the corners of what is worn lie in the picture, 0..1 to the right and down.
+   * @type {(worn: Worn, origin: Numbers) => number[][]} */
+  places({ body, triangles, loops }, origin) {
+    const [left, top, right, low] = this.#boxes.get(body.slots[0]) ?? [0, 0, 1, 1], turned = upright(body, origin);
+    const place = (/** @type {number} */ value, /** @type {number} */ k) =>
+      (k % 2 ? (value - top) / (low - top || 1) : (value - left) / (right - left || 1));
+    const band = bandOf(loops.map((loop) => loop.flatMap(turned)), RIM * (low - top));
+    return [...band, ...triangles.map((corners) => corners.flatMap(withMiddle(turned, loops)))].map((each) => each.map(place));
+  }
+}
 
 /** Draw what a body wears; at: places on the page by slot, zoom: pixels of a metre.
  * @type {(context: CanvasRenderingContext2D, worn: Worn, picture: WornPicture | undefined, at: Numbers,

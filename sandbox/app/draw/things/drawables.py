@@ -163,7 +163,9 @@ class Drawables:
         if look.picture is None:
             return shapes_of(actor, pieces, radius) if look.skin != CLOTH else [], faces, []
         shapes = [worn_shape(actor, piece.loops, radius) for piece in pieces]
-        return shapes, faces, [Worn.on(actor, piece.left, piece.loops, radius) for piece in pieces]
+        state = self._state
+        origin = state.origin[actor.slots] if isinstance(state, Snapshot) else None
+        return shapes, faces, [Worn.on(actor, piece.left, piece.loops, radius, origin) for piece in pieces]
 
     def _add_joins(self, joins: list[Join], ends: Slots) -> None:
         self.working = Working([join for join in joins if join.look.line in WORKING])

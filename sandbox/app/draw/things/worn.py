@@ -35,6 +35,8 @@ FINER = 0.3
 BEYOND, ROOM = 3.0, 1.5
 # Corners lie on so many places of a pixel; where one place ends and the next begins, few corners lie by themselves.
 SNAP, SNAP_FROM = 1024.0, 0.37
+# Particles that have moved less than this [m] have not.
+UNMOVED = 1e-6
 # Bytes of all sheets that are kept, those used last.
 MOST_BYTES = 128 * 1024 * 1024
 
@@ -87,12 +89,15 @@ class Worn:
     _laid: tuple[tuple[int, int], Slots, Floats, CellArrays] | None = field(default=None, init=False)
 
     @classmethod
-    def on(cls, actor: Actor, triangles: Slots, loops: list[Slots], radius: float) -> "Worn":
+    def on(
+        cls, actor: Actor, triangles: Slots, loops: list[Slots], radius: float, origin: Floats | None = None
+    ) -> "Worn":  # fmt: skip
         """The picture of a body on triangles (t, 3) of indices of its particles, inside loops of slots.
 
-        -1 is the middle of all particles that they have.
+        -1 is the middle of all particles that they have. origin (n, 2): where particles were when the body was made
+        [m], as cuts have moved them; None: none has.
         """
-        form, low, size = _upright(actor)
+        form, low, size = _upright(actor, origin)
         place = (form - low) / size * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
         picture, own = actor.look.picture, np.unique(triangles[triangles >= 0])
         assert picture is not None
@@ -145,12 +150,27 @@ def worn_shape(actor: Actor, loops: list[Slots], radius: float) -> Shape:
     return Shape(loops, FLAT, actor.look.colour, WORN, radius, keep=keep_of(actor, loops), line=False)
 
 
-def _upright(actor: Actor) -> tuple[Floats, Floats, Floats]:
-    """Places (n, 2) [m] of particles as the body was described before it was turned; their lower left, and its size."""
-    form, cosine, sine = actor.local_form, np.cos(actor.angle), np.sin(actor.angle)
-    upright = np.stack([form[:, 0] * cosine + form[:, 1] * sine, form[:, 1] * cosine - form[:, 0] * sine], axis=1)
-    low = upright.min(axis=0)
-    return upright, low, np.maximum(upright.max(axis=0) - low, 1e-6)
+def _upright(actor: Actor, origin: Floats | None) -> tuple[Floats, Floats, Floats]:
+    """Places (n, 2) [m] of particles as the body was described before it was turned; its lower left, and its size.
+
+    origin (n, 2): see `Worn.on`.
+    """
+    form, count, turn = (
+        actor.local_form.copy(),
+        len(actor.made.form),
+        np.array([np.cos(actor.angle), np.sin(actor.angle)]),
+    )
+    whole = _turned_back(form[:count], turn)
+    if origin is not None:
+        moved = origin[:count] - actor.made.position
+        moved -= np.median(moved, axis=0)
+        form[:count] += np.where(np.abs(moved) > UNMOVED, moved, 0.0)
+    low = whole.min(axis=0)
+    return _turned_back(form, turn), low, np.maximum(whole.max(axis=0) - low, 1e-6)
+
+
+def _turned_back(at: Floats, turn: Floats) -> Floats:
+    return np.stack([at @ turn, at[:, 1] * turn[0] - at[:, 0] * turn[1]], axis=1)
 
 
 def round_of(actor: Actor, there: NDArray[np.bool_]) -> tuple[Slots, list[Slots]] | None:
