@@ -123,7 +123,7 @@ export function drawWorn(context, { body: { colour }, shape, triangles, texels, 
   context.save();
   context.clip(shape.path, 'evenodd');
   context.fillStyle = pattern;
-  context.imageSmoothingQuality = 'high';
+  context.imageSmoothingQuality = 'medium';
   // The band comes first, as triangles are drawn a little larger than they are.
   [...band, ...triangles.map((slots) => slots.flatMap(placeOf))].forEach((points, k) => {
     fillTriangle(context, points, texels[k]);
