@@ -20,6 +20,7 @@ from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.plan.plan import Plan, kept_plan
 from sandbox.level.reading.files import LevelError, keep_file, parse_level
+from sandbox.level.reading.pictures import read_pictures
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
@@ -350,7 +351,9 @@ def level_of(source: str, head: FirstLine) -> Level:
     if level_digest(head.level) != head.level_sha256:
         raise ReplayError(f"{source}: line 1: the level is not the one that was recorded: its sha256 differs")
     try:
-        return parse_level(_compact(head.level), f"{source}: line 1: level")
+        level = parse_level(_compact(head.level), f"{source}: line 1: level")
+        read_pictures(level, Path(source).parent, source, has_all=False)
+        return level
     except LevelError as error:
         raise ReplayError(*error.faults) from None
 
