@@ -5,11 +5,12 @@ is the curve. A second copy, in which nothing is pulled, says where its place is
 """
 
 import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.level.format.slices import as_part, at_once
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.components import label_linked
 from sandbox.physics.step import step
@@ -23,6 +24,8 @@ MOST_BEFORE, MOST_HELD, MOST_SECONDS = 10.0, 10.0, 30.0
 AT_REST = 1e-3
 # What does not come back within this share of the pull has been moved for good.
 LEFT = 0.05
+# The share of the work that is the wait before the pull, and that of one pull.
+WAIT, PULL = 0.2, 0.4
 
 
 class NoCurve(ValueError):
@@ -69,18 +72,27 @@ def release(world: World, particle: int, towards: Sequence[float], size: float) 
 
     The world stays as it is. Raises NoCurve where it does not come back to its place.
     """
+    return at_once(release_in_slices(world, particle, towards, size))
+
+
+def release_in_slices(
+    world: World, particle: int, towards: Sequence[float], size: float
+) -> Generator[float, None, StepResponse]:
+    """As `release`, a tick at a time; says how much is done, 0..1."""
     length = float(np.hypot(towards[0], towards[1]))
     if not length > 0.0 or not size > 0.0:
         raise NoCurve("it has no size, or the way to pull it has no length")
     along = np.asarray(towards, float) / length
     rested = copy.deepcopy(world)
-    _run((rested,), lambda: float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size, MOST_BEFORE)
-    for last, share in enumerate(PULLS, 1 - len(PULLS)):
-        errors = _pulled(rested, particle, along, share * size)
+    before = _run((rested,), lambda: float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size, MOST_BEFORE)
+    yield from as_part(before, 0.0, WAIT)
+    for number, share in enumerate(PULLS):
+        first = WAIT + PULL * number
+        errors = yield from as_part(_pulled(rested, particle, along, share * size), first, first + PULL)
         left = float(np.mean(errors[-_window(world) :])) / errors[0]
         if abs(left) <= LEFT:
             break
-        if last == 0:
+        if number == len(PULLS) - 1:
             took = len(errors) / world.settings.tick_rate
             if took >= MOST_SECONDS:
                 raise NoCurve(f"it still moves after {took:.0f} s, or something else does: let all come to rest first")
@@ -97,18 +109,19 @@ def _window(world: World) -> int:
     return max(2, world.settings.tick_rate // 2)
 
 
-def _run(worlds: Sequence[World], rests: Callable[[], bool], seconds: float) -> None:
+def _run(worlds: Sequence[World], rests: Callable[[], bool], seconds: float) -> Generator[float, None, None]:
     """Ticks until all rests, three times in a row, or for so long [s]."""
-    resting = 0
-    for _ in range(round(seconds * worlds[0].settings.tick_rate)):
+    resting, ticks = 0, round(seconds * worlds[0].settings.tick_rate)
+    for tick in range(ticks):
         for world in worlds:
             step(world)
+        yield tick / ticks
         resting = resting + 1 if rests() else 0
         if resting >= 3:
             break
 
 
-def _pulled(rested: World, particle: int, along: Floats, pull: float) -> Floats:
+def _pulled(rested: World, particle: int, along: Floats, pull: float) -> Generator[float, None, Floats]:
     # How far a particle [m] is from where it would be without a pull, tick by tick from when it is let go.
     still, pulled = copy.deepcopy(rested), copy.deepcopy(rested)
     pulled.change("position", pulled.position[particle] + pull * along, particle)
@@ -118,13 +131,14 @@ def _pulled(rested: World, particle: int, along: Floats, pull: float) -> Floats:
     def rests() -> bool:
         return float(np.max(np.abs(pulled.velocity - still.velocity), initial=0.0)) <= AT_REST * pull
 
-    _run((still, pulled), rests, MOST_HELD)
+    yield from as_part(_run((still, pulled), rests, MOST_HELD), 0.0, 0.5)
     pulled.unpin(particle)
     errors = [float((pulled.position[particle] - still.position[particle]) @ along)]
-    window = _window(rested)
-    for _ in range(round(MOST_SECONDS * rested.settings.tick_rate)):
+    window, ticks = _window(rested), round(MOST_SECONDS * rested.settings.tick_rate)
+    for tick in range(ticks):
         step(still)
         step(pulled)
+        yield 0.5 + 0.5 * tick / ticks
         errors.append(float((pulled.position[particle] - still.position[particle]) @ along))
         recent = errors[-window:]
         if len(errors) > window and max(recent) - min(recent) <= AT_REST * pull:

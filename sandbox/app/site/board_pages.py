@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import quote
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.app.site.index_page import LEVELS, SCRIPTS, STYLE, IndexPage, SiteLevel
 from sandbox.app.site.site import write_site
 from sandbox.export.policy import policy
+from sandbox.level.format.slices import at_once
 from sandbox.level.format.writing import write_file
 from sandbox.page.bundle import BUNDLE
 from sandbox.page.page import filled
