@@ -33,8 +33,8 @@ FITS, ROUNDS, SOUGHT = 40, 12, 10
 # The highest frequency that is tried, as a share of the highest that there is, and in a tick; halvings until one
 # settles in time.
 HIGH, HIGHEST, BISECTIONS = 0.99, 0.4, 40
-# How far the search goes at once, in logarithms.
-FARTHEST = 1.5
+# How far the search goes at once, and where it has come to what it aimed at, in logarithms.
+FARTHEST, REACHED = 1.5, 0.03
 # How near a thing's curve comes to what is asked for until that is enough, and what is as asked for a person.
 NEAR, AS_ASKED = 0.01, 0.02
 
@@ -288,7 +288,8 @@ def sought_in_slices(
 ) -> Generator[float, None, Sought]:
     """As `sought`, a tick at a time; says how much is done at least, 0..1."""
     part = 1.0 / (SOUGHT + 1)
-    pair = yield from as_part(_pair_in_slices(overshoot, settling, 1.0 / world.settings.tick_rate), 0.0, part)
+    aim, tick = (overshoot, settling), 1.0 / world.settings.tick_rate
+    pair = yield from as_part(_pair_in_slices(*aim, tick), 0.0, part)
     aimed = there = _worth(pair)
     slopes, change = np.eye(2), np.zeros(2)
     before: Floats | None = None
@@ -308,11 +309,18 @@ def sought_in_slices(
             best = Sought(overshoot, settling, *pair, material, feel, miss)
         if miss < NEAR:
             break
-        misses = _worth((feel.stiffness, feel.damping)) - aimed
+        made = _worth((feel.stiffness, feel.damping))
         if before is not None:
-            slopes += np.outer(misses - before - slopes @ change, change) / float(change @ change)
-        before = misses
-        change = np.clip(-np.linalg.lstsq(slopes, misses, rcond=None)[0], -FARTHEST, FARTHEST)
+            slopes += np.outer(made - before - slopes @ change, change) / float(change @ change)
+        if float(np.max(np.abs(made - aimed))) < REACHED:
+            # It is that single spring by now, and its curve is another one nevertheless: aim to the other side of it.
+            aim = max(aim[0] + overshoot - feel.numbers.overshoot, 0.0), aim[1] * settling / feel.numbers.settling
+            try:
+                aimed = _worth((yield from as_part(_pair_in_slices(*aim, tick), *2 * (part * (number + 1),))))
+            except ValueError:
+                break
+        before = made
+        change = np.clip(np.linalg.lstsq(slopes, aimed - made, rcond=None)[0], -FARTHEST, FARTHEST)
         there = there + change
     assert best is not None
     return best

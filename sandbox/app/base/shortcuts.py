@@ -222,6 +222,7 @@ SHORTCUTS = (
     Shortcut("", ("Arrows",), "Move the keyboard cursor; Shift: faster", "Keyboard", "play"),
     Shortcut("press", ("Enter",), "Press or release the tool at the cursor", "Keyboard", "play"),
     Shortcut("thing_menu", ("Q", "Menu", "Shift+F10"), "Menu of the thing at the cursor", "Keyboard", "play"),
+    Shortcut("feel", ("Shift+Q",), "Feel: how the thing at the cursor comes back", "Keyboard", "play"),
     Shortcut("next_thing", ("N",), "Cursor to the next thing", "Keyboard", "play"),
     Shortcut("previous_thing", ("Shift+N",), "Cursor to the previous thing", "Keyboard", "play"),
     Shortcut("next_particle", ("PageDown",), "Cursor to the next particle of the thing", "Keyboard", "play"),
