@@ -35,6 +35,8 @@ FITS, ROUNDS, SOUGHT = 40, 12, 10
 HIGH, HIGHEST, BISECTIONS = 0.99, 0.4, 40
 # How far the search goes at once, and where it has come to what it aimed at, in logarithms.
 FARTHEST, REACHED = 1.5, 0.03
+# How far off the single spring's Cs and Cd are at most that the search goes on from there alone.
+ENOUGH = 0.25
 # How near a thing's curve comes to what is asked for until that is enough, and what is as asked for a person.
 NEAR, AS_ASKED = 0.01, 0.02
 
@@ -289,41 +291,59 @@ def sought_in_slices(
     """As `sought`, a tick at a time; says how much is done at least, 0..1."""
     part = 1.0 / (SOUGHT + 1)
     aim, tick = (overshoot, settling), 1.0 / world.settings.tick_rate
-    pair = yield from as_part(_pair_in_slices(*aim, tick), 0.0, part)
-    aimed = there = _worth(pair)
-    slopes, change = np.eye(2), np.zeros(2)
-    before: Floats | None = None
+    aimed = _worth((yield from as_part(_pair_in_slices(*aim, tick), 0.0, part)))
+    # From where it is now, or where a single spring would be: from what is nearer.
+    begins = [_pair_now(world, material), aimed]
+    there, at, slopes = begins.pop(), aimed, np.eye(2)
     best: Sought | None = None
     for number in range(1, SOUGHT + 1):
-        pair = _pair(there)
+        pair, feel = _pair(there), None
         tried = copy.deepcopy(world)
         tried.set_coefficients(*pair, material)
         try:
             feel = yield from as_part(measure(tried), part * number, part * (number + 1))
         except NoCurve:
-            if best is None:
+            if best is None and not begins:
                 raise
-            break
-        miss = max(abs(feel.numbers.overshoot - overshoot), abs(feel.numbers.settling / settling - 1.0))
-        if best is None or miss < best.missed:
-            best = Sought(overshoot, settling, *pair, material, feel, miss)
+        miss = math.inf if feel is None else _missed(feel, overshoot, settling)
+        is_better = feel is not None and (best is None or miss < best.missed)
+        change, now = there - at, np.zeros(2) if feel is None else _worth((feel.stiffness, feel.damping))
+        if best is not None and feel is not None and not begins:
+            made = _worth((best.feel.stiffness, best.feel.damping))
+            slopes += np.outer(now - made - slopes @ change, change) / float(change @ change)
+        if feel is not None and is_better:
+            best, at = Sought(overshoot, settling, *pair, material, feel, miss), there
         if miss < NEAR:
             break
-        made = _worth((feel.stiffness, feel.damping))
-        if before is not None:
-            slopes += np.outer(made - before - slopes @ change, change) / float(change @ change)
-        if float(np.max(np.abs(made - aimed))) < REACHED:
+        if miss > ENOUGH and begins:
+            there = begins.pop()
+            continue
+        begins.clear()
+        if not is_better or best is None:
+            # Too far: springs that are that soft let it lie on something, or turn over.
+            there = 0.5 * (there + at)
+            continue
+        if float(np.max(np.abs(now - aimed))) < REACHED:
             # It is that single spring by now, and its curve is another one nevertheless: aim to the other side of it.
             aim = max(aim[0] + overshoot - feel.numbers.overshoot, 0.0), aim[1] * settling / feel.numbers.settling
             try:
                 aimed = _worth((yield from as_part(_pair_in_slices(*aim, tick), *2 * (part * (number + 1),))))
             except ValueError:
                 break
-        before = made
-        change = np.clip(np.linalg.lstsq(slopes, aimed - made, rcond=None)[0], -FARTHEST, FARTHEST)
-        there = there + change
+        there = at + np.clip(np.linalg.lstsq(slopes, aimed - now, rcond=None)[0], -FARTHEST, FARTHEST)
     assert best is not None
     return best
+
+
+def _missed(feel: Feel, overshoot: float, settling: float) -> float:
+    return max(abs(feel.numbers.overshoot - overshoot), abs(feel.numbers.settling / settling - 1.0))
+
+
+def _pair_now(world: LevelWorld, material: int | None) -> Floats:
+    # What Cs and Cd of the springs of a material are worth as they are, those in the middle where they differ.
+    mine = (world.material >= 0 if material is None else world.material == material) & world.spring_active
+    mine &= world.law != LAW_HOOKE
+    return _worth((float(np.median(world.stiffness[mine])), float(np.median(world.damping[mine]))))
 
 
 def _worth(pair: tuple[float, float]) -> Floats:
