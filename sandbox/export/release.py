@@ -1,7 +1,8 @@
 """Release: how a thing comes back that is pulled aside and let go, measured in a copy of its world.
 
-One particle is held a little aside until all rests, and let go; how far it is from its place, as a share of the first,
-is the curve. A second copy, in which nothing is pulled, says where its place is: what moves by itself does not count.
+One particle is held a little aside until all else rests, and let go; how far it is from its place, as a share of the
+first, is the curve. A second copy, in which nothing is pulled, says where its place is, as it is held and later: what
+moves by itself does not count.
 """
 
 import copy
@@ -84,18 +85,26 @@ def release_in_slices(
         raise NoCurve("it has no size, or the way to pull it has no length")
     along = np.asarray(towards, float) / length
     rested = copy.deepcopy(world)
-    before = _run((rested,), lambda: float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size, MOST_BEFORE)
-    yield from as_part(before, 0.0, WAIT)
+
+    def wait() -> bool:
+        step(rested)
+        return float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size
+
+    yield from as_part(_run(wait, round(MOST_BEFORE * world.settings.tick_rate)), 0.0, WAIT)
     for number, share in enumerate(PULLS):
         first = WAIT + PULL * number
         errors = yield from as_part(_pulled(rested, particle, along, share * size), first, first + PULL)
         left = float(np.mean(errors[-_window(world) :])) / errors[0]
-        if abs(left) <= LEFT:
+        # What is let go from rest never goes further than it was pulled, as long as it neither slips nor breaks.
+        is_further = float(np.max(np.abs(errors))) > (1.0 + LEFT) * errors[0]
+        if abs(left) <= LEFT and not is_further:
             break
         if number == len(PULLS) - 1:
             took = len(errors) / world.settings.tick_rate
             if took >= MOST_SECONDS:
                 raise NoCurve(f"it still moves after {took:.0f} s, or something else does: let all come to rest first")
+            if is_further:
+                raise NoCurve("it does not come back: let go, it goes further than it was pulled")
             raise NoCurve(
                 f"it does not come back: {100.0 * left:.0f} % of the way is left, at rest, after {took:.0f} s"
             )
@@ -109,32 +118,40 @@ def _window(world: World) -> int:
     return max(2, world.settings.tick_rate // 2)
 
 
-def _run(worlds: Sequence[World], rests: Callable[[], bool], seconds: float) -> Generator[float, None, None]:
-    """Ticks until all rests, three times in a row, or for so long [s]."""
-    resting, ticks = 0, round(seconds * worlds[0].settings.tick_rate)
+def _run(advance: Callable[[], bool], ticks: int) -> Generator[float, None, None]:
+    """Ticks until all rests, three times in a row, or so many; advance: makes one, and says whether all rests."""
+    resting = 0
     for tick in range(ticks):
-        for world in worlds:
-            step(world)
-        yield tick / ticks
-        resting = resting + 1 if rests() else 0
+        resting = resting + 1 if advance() else 0
         if resting >= 3:
             break
+        yield tick / ticks
 
 
 def _pulled(rested: World, particle: int, along: Floats, pull: float) -> Generator[float, None, Floats]:
     # How far a particle [m] is from where it would be without a pull, tick by tick from when it is let go.
     still, pulled = copy.deepcopy(rested), copy.deepcopy(rested)
-    pulled.change("position", pulled.position[particle] + pull * along, particle)
-    pulled.change("velocity", (0.0, 0.0), particle)
     pulled.pin(particle)
 
-    def rests() -> bool:
-        return float(np.max(np.abs(pulled.velocity - still.velocity), initial=0.0)) <= AT_REST * pull
+    def hold() -> None:
+        # Where it would be moves by itself, where a motor runs or what holds it swings.
+        pulled.change("position", still.position[particle] + pull * along, particle)
+        pulled.change("velocity", still.velocity[particle], particle)
 
-    yield from as_part(_run((still, pulled), rests, MOST_HELD), 0.0, 0.5)
+    def hold_on() -> bool:
+        step(still)
+        step(pulled)
+        hold()
+        apart, own = pulled.velocity - still.velocity, still.velocity[particle]
+        return float(max(np.max(np.abs(apart)), np.max(np.abs(own)))) <= AT_REST * pull
+
+    hold()
+    rate = rested.settings.tick_rate
+    yield from as_part(_run(hold_on, round(MOST_HELD * rate)), 0.0, 0.5)
     pulled.unpin(particle)
+    hold()
     errors = [float((pulled.position[particle] - still.position[particle]) @ along)]
-    window, ticks = _window(rested), round(MOST_SECONDS * rested.settings.tick_rate)
+    window, ticks = _window(rested), round(MOST_SECONDS * rate)
     for tick in range(ticks):
         step(still)
         step(pulled)

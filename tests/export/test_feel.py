@@ -9,7 +9,7 @@ import pytest
 
 from sandbox.cli import feel, main
 from sandbox.export.curves import NEAREST, TOOLS, card_page, card_picture, card_text, curve_for, points_of
-from sandbox.export.feel import card_of, feel_of, numbers_of, pair_for
+from sandbox.export.feel import card_of, feel_of, material_of, numbers_of, pair_for, sought
 from sandbox.export.release import NoCurve, particle_to_pull, release
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import load_level
@@ -93,16 +93,17 @@ def test_a_thing_comes_back_in_its_level_as_its_card_says(level, body, way):
     for _ in range(900):
         step(world)
     card = feel_of(world, body, way=way)
-    # By hand, so to speak: as far, held for ten seconds, let go.
+    # By hand, so to speak: as far from where it is without a hand, held for ten seconds, let go.
     pulled, still = copy.deepcopy(world), copy.deepcopy(world)
     slot, along = card.released.particle, np.array(card.released.way)
-    pulled.change("position", pulled.position[slot] + card.released.pull * along, slot)
-    pulled.change("velocity", (0.0, 0.0), slot)
     pulled.pin(slot)
     errors = []
     for tick in range(600 + len(card.released.errors)):
         if tick == 600:
             pulled.unpin(slot)
+        if tick <= 600:
+            pulled.change("position", still.position[slot] + card.released.pull * along, slot)
+            pulled.change("velocity", still.velocity[slot], slot)
         if tick >= 600:
             errors.append((pulled.position[slot] - still.position[slot]) @ along)
         step(still)
@@ -110,6 +111,38 @@ def test_a_thing_comes_back_in_its_level_as_its_card_says(level, body, way):
     found = numbers_of(np.array(errors) / errors[0], TICK)
     assert found.overshoot == pytest.approx(card.numbers.overshoot, abs=0.02)
     assert found.settling == pytest.approx(card.numbers.settling, rel=0.02)
+
+
+def test_what_swings_for_ever_beside_a_thing_does_not_count():
+    alone, beside = spring(0.05, 0.1), spring(0.05, 0.1)
+    first = beside.add_particles(["c", "d"], [(0.0, 9.0), (1.0, 9.0)], velocity=[(0.0, 0.0), (3.0, 0.0)])
+    beside.add_springs(["c:d"], [first], [first + 1], stiffness=0.01, damping=0.0)
+    curves = [release(world, 1, (1.0, 0.0), 1.0).errors for world in (alone, beside)]
+    assert np.array_equal(curves[0], curves[1][: len(curves[0])])
+
+
+def test_what_rolls_is_held_where_it_would_be_without_the_pull():
+    world = build_world(load_level("suspension_car"))
+    for _ in range(240):
+        step(world)
+    assert np.max(np.abs(world.velocity)) > 5.0
+    # Held at one place of the ground while it rolls, its curve is no spring's: they are 74 % apart.
+    assert feel_of(world, "rear wheel").difference < 0.15
+
+
+def test_a_search_says_how_near_it_came_and_takes_the_springs_of_the_thing_alone():
+    world = build_world(load_level("low_door"))
+    assert world.material_names[material_of(world, "bridge")] == "deck"
+    others = world.material != material_of(world, "bridge")
+
+    def measure(copied):
+        assert np.array_equal(copied.stiffness[others], world.stiffness[others])
+        yield 0.5
+        return card_of("bridge", release(spring(0.02, 0.1), 1, (1.0, 0.0), 1.0))
+
+    found = sought(world, 0.1, 0.4, measure, material_of(world, "bridge"))
+    assert found.nearness.startswith("the closest that was found: ") and found.nearness.endswith("10 % and 0.4 s asked")
+    assert 'for the springs of "deck"' in found.pair_text(world)
 
 
 def test_what_nothing_holds_and_what_does_not_come_back_say_so():
