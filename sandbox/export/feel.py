@@ -308,7 +308,7 @@ def sought_in_slices(
         miss = math.inf if feel is None else _missed(feel, overshoot, settling)
         is_better = feel is not None and (best is None or miss < best.missed)
         change, now = there - at, np.zeros(2) if feel is None else _worth((feel.stiffness, feel.damping))
-        if best is not None and feel is not None and not begins:
+        if best is not None and feel is not None and change.any() and not begins:
             made = _worth((best.feel.stiffness, best.feel.damping))
             slopes += np.outer(now - made - slopes @ change, change) / float(change @ change)
         if feel is not None and is_better:
@@ -319,7 +319,7 @@ def sought_in_slices(
             there = begins.pop()
             continue
         begins.clear()
-        if not is_better or best is None:
+        if feel is None or not is_better:
             # Too far: springs that are that soft let it lie on something, or turn over.
             there = 0.5 * (there + at)
             continue

@@ -44,7 +44,7 @@ class CurveState(NamedTuple):
 
 def _lines_of(feel: Feel, name: str, style: tuple[int, int]) -> list[GraphLine]:
     """The curve of a card and its single spring as lines of a chart, in per cent of the way."""
-    seconds = feel.released.tick * np.arange(len(feel.curve))
+    seconds = feel.released.tick * np.arange(len(feel.curve), dtype=np.float64)
     return [
         GraphLine(name, seconds, 100.0 * feel.curve, *style),
         GraphLine("one spring", seconds, 100.0 * feel.spring_curve, *SINGLE),
