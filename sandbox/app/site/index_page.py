@@ -9,13 +9,13 @@ from urllib.parse import quote, urlsplit
 
 import pygame
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.picture import crop_of, draw_picture, particles_of, view_of
 from sandbox.app.draw.picture_cache import SIZE, SUFFIX
 from sandbox.app.gallery.sections import SECTIONS, GallerySection
 from sandbox.export.policy import policy
 from sandbox.level.document.model import Level
+from sandbox.level.format.slices import at_once
 from sandbox.level.format.writing import write_file
 from sandbox.page.bundle import BUNDLE
 from sandbox.page.page import COMPILING, ICON, KERNELS, filled, hint_markup

@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO, ClassVar, Literal, TypeVar, cast
+from typing import Annotated, Any, BinaryIO, ClassVar, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
@@ -18,6 +18,7 @@ from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level, Settings
 from sandbox.level.format.foreign import CONFLICT, LFS_POINTER, scan
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
+from sandbox.level.format.slices import at_once
 from sandbox.level.plan.plan import Plan, kept_plan
 from sandbox.level.reading.files import LevelError, keep_file, parse_level
 from sandbox.level.reading.pictures import read_pictures
@@ -165,12 +166,7 @@ def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -
     retold: accept one of another physics version, for its level and commands, which can be recorded again.
     Raises ReplayError, naming file and line, for anything that no Recorder wrote.
     """
-    slices = read_in_slices(path, partial, retold)
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            return cast(Replay, end.value)
+    return at_once(read_in_slices(path, partial, retold))
 
 
 def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False) -> Generator[None, None, Replay]:
