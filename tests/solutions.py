@@ -10,8 +10,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.page import so_far
+from sandbox.level.format.slices import at_once
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.query import grip_radius

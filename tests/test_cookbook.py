@@ -8,6 +8,7 @@ from sandbox.editor.lint.lint import findings
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import read_level
+from sandbox.level.reading.pictures import pictures_of
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.session.check_run import HeldKeys, run_checks
 from sandbox.session.session import Session
@@ -24,7 +25,7 @@ def test_every_level_of_the_folder_is_a_recipe_with_a_picture():
     assert {path.stem for path in cookbook.FOLDER.glob("*.json")} == set(NAMES)
     assert {path.name for path in cookbook.FOLDER.iterdir()} == {
         path.name for name in NAMES for path in (cookbook.path_of(name), cookbook.picture_of(name))
-    }
+    } | {picture for name in NAMES for picture in pictures_of(read_level(cookbook.path_of(name)))}
     assert len(NAMES) >= 20
 
 

@@ -147,7 +147,8 @@ EXCEPTIONS = {
     "sandbox.app.draw.things.members._PLAIN", "sandbox.app.draw.things.soft.shape_of: look.skin",
     "sandbox.app.draw.things.members.PERIOD", "sandbox.app.draw.things.members._STRAND_LINES",
     # A field of text, or with a value in it.
-    "sandbox.app.widgets.property_widgets._make: about.kind",
+    "sandbox.app.draw.things.worn.round_of: actor.body.type", "sandbox.app.widgets.property_widgets._make: about.kind",
+    "sandbox.app.widgets.property_widgets._pick: each.about.kind",
     "sandbox.app.widgets.property_widgets._show_value: each.about.kind",
     "sandbox.app.widgets.property_widgets._rows: about.kind", "sandbox.editor.panel.properties._made: about.kind",
     "sandbox.editor.panel.property._text: about.kind", "sandbox.editor.range_trial._numbers: about.kind",

@@ -5,6 +5,7 @@ even mesh of a bounded number of particles, whatever the outline.
 """
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.bring.picture import cut_out
 from sandbox.bring.sketch import (
     POINT_LIMIT,
     FilledShape,
     Kind,
     LeftOut,
     OpenLine,
+    Pixels,
     Ring,
     Rule,
     Sketch,
@@ -27,6 +30,7 @@ from sandbox.bring.sketch import (
 from sandbox.level.document.model import ContactsDef, Level, TerrainDef
 from sandbox.level.format.limits import CORNER_LIMIT, FORMAT, POLYGON_WORK_LIMIT, TERRAIN_LIMIT, TEXT_LIMIT, VERSION
 from sandbox.level.format.look import BodyLook
+from sandbox.level.format.picture import Picture
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import FirmnessDef
@@ -106,8 +110,11 @@ def level_of_drawing(drawing: Sketch, kind: Kind, width: float | None, name: str
     if kind == "jelly":
         taken: set[str] = set()
         names = [free_name(shape.name or name, name, taken) for shape in shapes]
-        made = replaced(made, bodies=tuple(_jellies(shapes, names, placed.left_out)))
+        bodies = _jellies(shapes, names, placed.left_out)
+        made = replaced(made, bodies=tuple(bodies if placed.picture is None else _wearing(bodies, placed.picture)))
     else:
+        if placed.picture is not None:
+            placed.left_out.add("picture inside the outline")
         made = replaced(made, terrain=tuple(ground_of(shapes, placed.lines, name, placed.left_out)))
     check_found(made.bodies or made.terrain, placed.left_out)
     return made
@@ -128,6 +135,9 @@ def _in_metres(drawing: Sketch, width: float | None) -> Sketch:
         raise Unreadable(f"would be {size * scale:,.0f} m large; at most {LARGEST:,.0f} m: give it a smaller width")
     moved = Sketch(drawing.usual, left_out=drawing.left_out, tolerance=drawing.tolerance * scale)
     origin = np.array([(left + right) / 2.0, bottom])
+    if drawing.picture is not None:
+        pixels, (x, y), size = drawing.picture.pixels, drawing.picture.corner, drawing.picture.size
+        moved.picture = Pixels(pixels, ((x - origin[0]) * scale, (y - origin[1]) * scale), size * scale)
     for outline in drawing.outlines:
         rings = tuple((ring - origin) * scale for ring in outline.rings)
         moved.outlines.append(FilledShape(rings, outline.rule, outline.colour, outline.name))
@@ -145,7 +155,7 @@ def _thicken(drawing: Sketch) -> None:
     thin = THIN * max(box[2] - box[0], box[3] - box[1])
     for line in drawing.lines:
         if line.width < thin or len(line.points) > 2_000:
-            drawing.left_out.add("open line too thin for a jelly")
+            drawing.left_out.add("open line too thin for a jelly (as ground it comes in)")
             continue
         around = shapely.LineString(line.points).buffer(line.width / 2.0, quad_segs=4)
         rings = (around.exterior, *around.interiors)
@@ -274,6 +284,18 @@ def _jellies(shapes: Sequence[Region], names: Sequence[str], left_out: LeftOut) 
             continue
         corners, work = corners + more, work + harder
         made.append(body)
+    return made
+
+
+def _wearing(bodies: Sequence[JellyDef], picture: Pixels) -> list[JellyDef]:
+    """Jellies that wear the part of a picture that they are the outline of."""
+    made = []
+    for body in bodies:
+        box = bounds([expansion(body).position])
+        assert box is not None
+        name = re.sub(r"[^\w]+", "-", body.id.casefold()).strip("-_") or "body"
+        worn = Picture(f"{name}-skin.png", cut_out(picture, box))
+        made.append(replaced(body, look=BodyLook(**(body.look or BodyLook()).__dict__ | {"picture": worn})))
     return made
 
 

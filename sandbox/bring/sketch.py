@@ -70,12 +70,22 @@ class LeftOut:
         return [f"{count:,} {name if count == 1 else plural(name)}" for name, count in self.counts.most_common()]
 
 
+@dataclass(frozen=True)
+class Pixels:
+    """The pixels (h, w, 4) of a picture, 0..255, where its lower left corner lies (y up), and the size of a pixel."""
+
+    pixels: NDArray[np.uint8]
+    corner: tuple[float, float]
+    size: float
+
+
 @dataclass
 class Sketch:
     """Outlines and lines in the file's own unit, and what was left out.
 
     usual: what a drawing of this kind becomes unless told otherwise. tolerance: how far an outline may be moved without
-    a loss that is seen. metre: what becomes a metre. Both are in the file's unit.
+    a loss that is seen. metre: what becomes a metre. Both are in the file's unit. picture: what
+    jellies wear.
     """
 
     usual: Kind
@@ -84,6 +94,7 @@ class Sketch:
     left_out: LeftOut = field(default_factory=LeftOut)
     tolerance: float = 0.0
     metre: float | None = None
+    picture: Pixels | None = None
 
     def points(self) -> Iterator[Ring]:
         """The points of all rings and lines."""

@@ -29,6 +29,10 @@ DRAWN_LIMIT = 20_000
 DEPTH_LIMIT = 40
 # A first outline that covers this share of the page, or more, is its background.
 BACKGROUND = 0.98
+# What percentages are of where a page does not say how large it is [px].
+USUAL_PAGE = 100.0
+# Ends of a stroke meet that are no farther apart than this share of its size.
+SMALL_GAP = 0.1
 CONTAINERS = ("svg", "g", "a", "switch", "symbol")
 # Elements that say nothing of an outline, and are no loss.
 QUIET = ("defs", "style", "metadata", "title", "desc", "namedview", "linearGradient", "radialGradient", "pattern",
@@ -92,7 +96,7 @@ class _Reader:
     def __init__(self, root: Element) -> None:
         self.drawing = Sketch("jelly")
         self._box = _page(root)
-        self._paths = Paths((self._box[2], self._box[3]))
+        self._paths = Paths((self._box[2] or USUAL_PAGE, self._box[3] or USUAL_PAGE))
         # Width and height that a copy gives to the drawing which it copies.
         self._copy_size: tuple[float | None, float | None] = None, None
         self._sheet: Sheet = _style_sheet(root, self.drawing.left_out)
@@ -231,7 +235,11 @@ class _Reader:
             raise Unreadable(f"has a stroke wider than {PLACE_LIMIT:,.0f}; draw it thinner")
         for points, closed in ways:
             if len(points) > 3 and not closed:
-                closed = bool(np.all(np.abs(points[0] - points[-1]) <= 1e-6 * (np.abs(points[0]) + 1.0)))
+                # Ends that lie within each other's width are seen to meet, as in drawings by hand.
+                reach = np.maximum(
+                    1e-6 * (np.abs(points[0]) + 1.0), min(width, SMALL_GAP * np.ptp(points, axis=0).max())
+                )
+                closed = bool(np.all(np.abs(points[0] - points[-1]) <= reach))
             if closed and len(points) > 2:
                 self.drawing.outlines.append(FilledShape((points,), "nonzero", tint, name))
             elif len(points) > 1:
@@ -260,7 +268,7 @@ class _Reader:
     def take_background(self) -> None:
         """Leave out a first outline that covers the whole page, where others lie on it."""
         outlines = self.drawing.outlines
-        if len(outlines) < 2:
+        if not outlines or len(outlines) + len(self.drawing.lines) < 2:
             return
         found = bounds(outlines[0].rings)
         left, bottom, right, top = found or (0.0, 0.0, 0.0, 0.0)
@@ -331,12 +339,12 @@ def _matrix(text: str) -> NDArray[np.float64]:
 
 
 def _page(root: Element) -> tuple[float, float, float, float]:
-    """Left, top, width and height of the page [px]."""
+    """Left, top, width and height of the page [px]; 0 where it does not say how large it is."""
     numbers = [float(number) for number in _NUMBER.findall(root.get("viewBox", "")[:200])]
     if len(numbers) == 4 and numbers[2] > 0.0 and numbers[3] > 0.0:
         return numbers[0], numbers[1], numbers[2], numbers[3]
-    sizes = [_NUMBER.match(root.get(key, "")) for key in ("width", "height")]
-    width, height = (float(found[0]) if found else 100.0 for found in sizes)
+    told = [root.get(key, "").strip()[:STYLE_LIMIT] for key in ("width", "height")]
+    width, height = (float(found[0]) if (found := _NUMBER.match(size)) and size[-1] != "%" else 0.0 for size in told)
     return 0.0, 0.0, width, height
 
 
@@ -458,7 +466,10 @@ class Paths:
         if self._read > PATH_LIMIT:
             raise Unreadable(f"has more than {PATH_LIMIT:,} characters of paths; simplify it")
         if kind in ("polyline", "polygon"):
-            numbers = np.array(element.get("points", "").replace(",", " ").split(), dtype=np.float64)
+            text = element.get("points", "")
+            if _NUMBER.sub("", text).strip(", \t\r\n"):
+                raise ValueError("no number")
+            numbers = np.array(_NUMBER.findall(text), dtype=np.float64)
             return [(numbers[: len(numbers) // 2 * 2].reshape(-1, 2), kind == "polygon")]
         if kind == "line":
             ends = [[self.length(element, f"x{k}", 0), self.length(element, f"y{k}", 1)] for k in (1, 2)]

@@ -43,6 +43,8 @@ SOLID_LAYER = re.compile(
     r"collision|collide|solid|wall|(?<!back)(?<!fore)ground|platform|terrain|block|floor|obstacle|world|main",
     re.IGNORECASE,
 )
+# Digits of the number of a tile at most.
+NUMBER_DIGITS = 10
 # A layer that fills this share of its map is a background.
 BACKGROUND = 0.95
 # Shapes of a map, tiles that lie together counted as one.
@@ -89,10 +91,7 @@ class _Tiles:
                 drawing.left_out.add("tile set that is not beside the map")
                 continue
             self.sizes.append((first, number(found, "tilewidth"), number(found, "tileheight")))
-            tiles = found.get("tiles")
-            if isinstance(tiles, dict):
-                raise Unreadable("has tile sets of a Tiled before 1.2; save it with a newer one")
-            for tile in objects(found, "tiles"):
+            for tile in _tiles_of(found):
                 group = tile.get("objectgroup")
                 index = first + whole(tile, "id")
                 if isinstance(group, dict) and objects(group, "objects"):
@@ -143,20 +142,20 @@ class _Map:
             said = text(each, "type") or text(each, "class")
             is_named = bool(SOLID_LAYER.search(said)) or _is_marked(each)
             if is_solid or is_named or not (said or self._says_solid):
-                self._take_object(each, offset)
+                self._take_object(each, offset, is_solid or is_named)
                 continue
             own = (text(each, "name") or said)[:NAME_LENGTH]
             self._named += 1
             name = f'"{own}"' if own and self._named <= MOST_NAMED else "object"
             self.drawing.left_out.add(f"{name} (layer {title})")
 
-    def _take_object(self, each: Object, offset: tuple[float, float]) -> None:
+    def _take_object(self, each: Object, offset: tuple[float, float], is_solid: bool) -> None:
         x, y = number(each, "x") + offset[0], number(each, "y") + offset[1]
         name = text(each, "name")
         if each.get("visible") is False:
             self.drawing.left_out.add("hidden object")
         elif "gid" in each:
-            self._take_tile_object(each, x, y)
+            self._take_tile_object(each, x, y, is_solid)
         elif "template" in each:
             self.drawing.left_out.add("object of a template")
         elif each.get("text"):
@@ -166,19 +165,22 @@ class _Map:
         else:
             self._take_shape(each, (x, y), np.eye(2), name)
 
-    def _take_tile_object(self, each: Object, x: float, y: float) -> None:
+    def _take_tile_object(self, each: Object, x: float, y: float, is_solid: bool) -> None:
         cell = whole(each, "gid")
-        if cell & NUMBER not in self._tiles.shapes:
+        wide, high = self._tiles.size_of(cell & NUMBER, self._tile)
+        # What is said to be solid and has no shape is so as a whole, as a tile of a layer is.
+        whole_box = [{"width": wide, "height": high}] if is_solid or cell & NUMBER in self._tiles.solid else []
+        shapes = self._tiles.shapes.get(cell & NUMBER, whole_box)
+        if not shapes:
             self.drawing.left_out.add("tile object without a collision shape")
             return
         # Mirrored in its own box, stretched with that, and turned about its lower left corner.
-        wide, high = self._tiles.size_of(cell & NUMBER, self._tile)
         mirror, move = _mirroring(cell, wide, high)
         stretch = np.diag([(number(each, "width") or wide) / wide, (number(each, "height") or high) / high])
         angle = math.radians(number(each, "rotation"))
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) @ stretch
         corner = turn @ (np.array(move) + np.array([0.0, -high]))
-        for shape in self._tiles.shapes[cell & NUMBER]:
+        for shape in shapes:
             self._take_shape(shape, (x + corner[0], y + corner[1]), turn @ mirror, text(each, "name"), inner=True)
 
     def _take_shape(
@@ -245,7 +247,11 @@ class _Map:
             turn, move = _mirroring(cell, wide, high)
             for shape in self._tiles.shapes[cell & NUMBER]:
                 self._take_shape(shape, (x + move[0], y + move[1]), turn, "", inner=True)
-        return int(shaped.sum() + solid.sum())
+        taken = int(shaped.sum() + solid.sum())
+        plain = int(np.count_nonzero(cells)) - taken
+        if taken and plain:
+            self.drawing.left_out.add("tile without a collision shape", plain)
+        return taken
 
     def _take_blocks(self, solid: NDArray[np.bool_], corner: tuple[int, int], offset: tuple[float, float]) -> None:
         width, height = self._tile
@@ -268,9 +274,22 @@ def _says_solid(layers: list[Object], depth: int) -> bool:
     )
 
 
+def _tiles_of(tile_set: Object) -> list[Object]:
+    """The tiles of a set; before Tiled 1.2 they stood by their numbers, and their properties apart."""
+    numbered: dict[str, dict[str, Any]] = {}
+    for key, place in (("tiles", None), ("tileproperties", "properties")):
+        found = tile_set.get(key)
+        for digits, each in found.items() if isinstance(found, dict) else ():
+            if isinstance(each, dict) and digits.isdecimal() and len(digits) < NUMBER_DIGITS:
+                numbered.setdefault(digits, {"id": int(digits)}).update(each if place is None else {place: each})
+    return list(numbered.values()) or objects(tile_set, "tiles")
+
+
 def _is_marked(holder: Object) -> bool:
     """Whether a property says that a tile or a layer is solid."""
     properties = holder.get("properties")
+    if isinstance(properties, dict):
+        properties = [{"name": name, "value": value} for name, value in properties.items()]
     if not isinstance(properties, list):
         return False
     return any(

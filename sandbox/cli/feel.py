@@ -1,15 +1,16 @@
 """`sandbox feel`."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.base.command import Subcommand, argument, option, option_or, optional_argument
+from sandbox.cli.base.command import Subcommand, argument, flag, option, option_or, optional_argument
 from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
 from sandbox.terminal import seconds, share
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from sandbox.export.feel import Feel
     from sandbox.level.assembly.build_world import LevelWorld
 
@@ -37,6 +38,7 @@ class FeelOptions:
         str, choices=TOOLS,
         help="css, unity, godot: the curve as measured; swiftui, flutter, motion, react-spring: the nearest spring",
     )  # fmt: skip
+    nearest: bool = flag("the curve of the nearest spring, also where the measured one can be had")
     output: Path | None = option(
         Path, "-o", "--output", metavar="FILE", help="write a picture (.svg), or a page that plays the curve (.html)"
     )
@@ -44,7 +46,7 @@ class FeelOptions:
 
 def feel(options: FeelOptions) -> int:
     """Print how a thing feels, or what makes it feel so. Raises Refused."""
-    from sandbox.export.curves import card_page, card_picture, card_text, curve_for
+    from sandbox.export.curves import MEASURED, NEAREST, card_page, card_picture, card_text, curve_for
     from sandbox.export.engines import NoSuchBody
     from sandbox.export.release import NoCurve
     from sandbox.level.assembly.build_world import build_world
@@ -52,7 +54,8 @@ def feel(options: FeelOptions) -> int:
 
     if (options.overshoot is None) != (options.settle is None):
         raise Refused("--overshoot and --settle go together: a spring has two numbers")
-    writers = {".svg": card_picture, ".html": card_page}
+    form = NEAREST if options.nearest else None
+    writers = {".svg": card_picture, ".html": lambda found: card_page(found, form or MEASURED)}
     if options.output is not None and options.output.suffix not in writers:
         raise Refused(f"{options.output}: a picture ends in .svg, and a page in .html")
     world = build_world(level_of(options.level))
@@ -60,7 +63,9 @@ def feel(options: FeelOptions) -> int:
         step(world)
     try:
         found, wanted = _found(options, world)
-        text = curve_for(found, options.to) if options.to else f"{card_text(found)}\n{wanted}"
+        text = f"{card_text(found)}\n{wanted}"
+        if options.to:
+            text = "{}:\n{}\n".format(*curve_for(found, options.to, form))
     except NoSuchBody as error:
         raise Refused(f"{options.level}: {error}") from None
     except (NoCurve, ValueError) as error:
@@ -73,26 +78,20 @@ def feel(options: FeelOptions) -> int:
 
 def _found(options: FeelOptions, world: "LevelWorld") -> "tuple[Feel, str]":
     # The card, and what was looked for, as lines.
-    from sandbox.export.feel import feel_of, sought
-    from sandbox.export.numbers import percent, short
+    from sandbox.export.engines import choose_body
+    from sandbox.export.feel import feel_in_slices, feel_of, material_of, sought
 
     if options.particle is not None and options.particle not in world.particle_names:
         raise Refused(f"{options.level}: there is no particle called {options.particle}")
-
-    def measure(tried: "LevelWorld") -> "Feel":
-        return feel_of(tried, options.thing, options.particle, options.way)
-
     if options.overshoot is None or options.settle is None:
-        return measure(world), ""
-    stiffness, damping, found = sought(world, options.overshoot, options.settle, measure)
-    missed = max(
-        abs(found.numbers.overshoot - options.overshoot), abs(found.numbers.settling / options.settle - 1.0)
-    )  # fmt: skip
-    near = "as asked" if missed <= 0.02 else (
-        f"the nearest that was found, of {percent(options.overshoot)} and {short(options.settle)} s asked"
-    )  # fmt: skip
-    decimals = max(3, 2 - math.floor(math.log10(max(min(stiffness, damping), 1e-9))))
-    return found, f"  with Cs {stiffness:.{decimals}f}, Cd {damping:.{decimals}f} of all its springs: {near}\n"
+        return feel_of(world, options.thing, options.particle, options.way), ""
+
+    def measure(tried: "LevelWorld") -> "Generator[float, None, Feel]":
+        return feel_in_slices(tried, options.thing, options.particle, options.way)
+
+    material = material_of(world, choose_body(world, options.thing).name)
+    found = sought(world, options.overshoot, options.settle, measure, material)
+    return found.feel, f"  with {found.pair_text(world)}: {found.nearness}\n"
 
 
 COMMAND = Subcommand("feel", "measure how a thing comes back, and take its curve to another tool", FeelOptions, feel)

@@ -19,8 +19,8 @@ class LinkOptions:
 
 def link(options: LinkOptions) -> int:
     """Print a link that holds a recorded run. Raises Refused."""
-    from sandbox.app.base.loop import at_once
     from sandbox.app.share.runs_for_pages import link_to
+    from sandbox.level.format.slices import at_once
     from sandbox.session.replay.recording import ReplayError
 
     replay = recording_of(options.replay)

@@ -21,9 +21,9 @@ TEMPLATE = Path(__file__).with_name("feel.html")
 MEASURED, NEAREST = "the curve as it was measured", "the single spring that comes nearest"
 
 
-def points_of(feel: Feel) -> Floats:
-    """As few points (p, 2) of time [s] and progress as come near enough to the curve; from 0, 0 to 1 in the end."""
-    curve, tick = feel.curve, feel.released.tick
+def points_of(feel: Feel, form: str = MEASURED) -> Floats:
+    """As few points (p, 2) of time [s] and progress as come near enough to a curve; from 0, 0 to 1 in the end."""
+    curve, tick = feel.curve if form == MEASURED else feel.spring_curve, feel.released.tick
     beyond = np.flatnonzero(np.abs(1.0 - curve) > ENDED)
     end = min(int(beyond[-1]) + 1, len(curve) - 1)
     y = np.append(curve[:end], 1.0)
@@ -47,36 +47,13 @@ def _natural(feel: Feel) -> tuple[float, float]:
     return 2.0 * math.pi * feel.hz, feel.ratio
 
 
-def _css(feel: Feel) -> str:
-    points = points_of(feel)
+def _css(points: Floats) -> str:
     last = points[-1, 0]
     stops = [f"{_n(value)} {_n(100.0 * time / last)}%" for time, value in points[1:-1].tolist()]
     return f"transition: transform {round(1000.0 * last)}ms linear({', '.join(['0', *stops, '1'])});"
 
 
-def _swiftui(feel: Feel) -> str:
-    omega, ratio = _natural(feel)
-    bounce = 1.0 - ratio if ratio <= 1.0 else 1.0 / ratio - 1.0
-    return f".animation(.spring(duration: {_n(2.0 * math.pi / omega)}, bounce: {_n(bounce)}), value: value)"
-
-
-def _flutter(feel: Feel) -> str:
-    omega, ratio = _natural(feel)
-    return f"SpringDescription(mass: 1, stiffness: {_n(omega * omega)}, damping: {_n(2.0 * ratio * omega)})"
-
-
-def _motion(feel: Feel) -> str:
-    omega, ratio = _natural(feel)
-    return f'{{ type: "spring", mass: 1, stiffness: {_n(omega * omega)}, damping: {_n(2.0 * ratio * omega)} }}'
-
-
-def _react_spring(feel: Feel) -> str:
-    omega, ratio = _natural(feel)
-    return f"config: {{ mass: 1, tension: {_n(omega * omega)}, friction: {_n(2.0 * ratio * omega)} }}"
-
-
-def _unity(feel: Feel) -> str:
-    points = points_of(feel)
+def _unity(points: Floats) -> str:
     keys = [f"    new Keyframe({_n(time)}f, {_n(value)}f)" for time, value in points.tolist()]
     return (
         "var curve = new AnimationCurve(\n" + ",\n".join(keys) + ");\n"
@@ -87,8 +64,7 @@ def _unity(feel: Feel) -> str:
     )
 
 
-def _godot(feel: Feel) -> str:
-    points = points_of(feel)
+def _godot(points: Floats) -> str:
     low, high = float(points[:, 1].min()), float(points[:, 1].max())
     head = [
         f"# seconds: {_n(points[-1, 0])}", "var curve := Curve.new()", f"curve.min_value = {_n(low)}",
@@ -101,28 +77,44 @@ def _godot(feel: Feel) -> str:
     )
 
 
+def _swiftui(omega: float, ratio: float) -> str:
+    bounce = 1.0 - ratio if ratio <= 1.0 else 1.0 / ratio - 1.0
+    return f".animation(.spring(duration: {_n(2.0 * math.pi / omega)}, bounce: {_n(bounce)}), value: value)"
+
+
+def _flutter(omega: float, ratio: float) -> str:
+    return f"SpringDescription(mass: 1, stiffness: {_n(omega * omega)}, damping: {_n(2.0 * ratio * omega)})"
+
+
+def _motion(omega: float, ratio: float) -> str:
+    return f'{{ type: "spring", mass: 1, stiffness: {_n(omega * omega)}, damping: {_n(2.0 * ratio * omega)} }}'
+
+
+def _react_spring(omega: float, ratio: float) -> str:
+    return f"config: {{ mass: 1, tension: {_n(omega * omega)}, friction: {_n(2.0 * ratio * omega)} }}"
+
+
 def _n(value: float) -> str:
     return f"{value:.4f}".rstrip("0").rstrip(".")
 
 
-# By the name of a tool: which of the two forms it takes, and the text.
-TOOLS: dict[str, tuple[str, Callable[[Feel], str]]] = {
-    "css": (MEASURED, _css),
-    "unity": (MEASURED, _unity),
-    "godot": (MEASURED, _godot),
-    "swiftui": (NEAREST, _swiftui),
-    "flutter": (NEAREST, _flutter),
-    "motion": (NEAREST, _motion),
-    "react-spring": (NEAREST, _react_spring),
-}
+# What writes the points of a curve, and what writes a natural frequency [rad/s] and a damping ratio, for a tool.
+_BY_POINTS: dict[str, Callable[[Floats], str]] = {"css": _css, "unity": _unity, "godot": _godot}
+_BY_SPRING: dict[str, Callable[[float, float], str]] = {
+    "swiftui": _swiftui, "flutter": _flutter, "motion": _motion, "react-spring": _react_spring,
+}  # fmt: skip
+# Every tool by its name, with the forms that there are for it, the better one first.
+TOOLS = {**dict.fromkeys(_BY_POINTS, (MEASURED, NEAREST)), **dict.fromkeys(_BY_SPRING, (NEAREST,))}
 
 
-def curve_for(feel: Feel, tool: str) -> str:
-    """The text for a tool, by its name in TOOLS. Raises KeyError, and ValueError where it has no such spring."""
-    form, write = TOOLS[tool]
-    text = write(feel)
-    apart = f"; {percent(feel.difference)} of the way from what was measured" if form == NEAREST else ""
-    return f"{form}{apart}:\n{text}\n"
+def curve_for(feel: Feel, tool: str, form: str | None = None) -> tuple[str, str]:
+    """What a text for a tool of TOOLS is, with how far it is from what was measured, and the text itself.
+
+    form: one of the tool's; None: the first. Raises KeyError, and ValueError where the tool has no such spring.
+    """
+    form = form or TOOLS[tool][0]
+    text = _BY_POINTS[tool](points_of(feel, form)) if tool in _BY_POINTS else _BY_SPRING[tool](*_natural(feel))
+    return (form if form == MEASURED else f"{form}; {percent(feel.difference)} of the way from what was measured"), text
 
 
 def card_text(feel: Feel) -> str:
@@ -170,11 +162,11 @@ def card_picture(feel: Feel) -> str:
     )
 
 
-def card_page(feel: Feel) -> str:
-    """A page of its own that plays the curve by CSS: a box that goes there and back with it."""
+def card_page(feel: Feel, form: str = MEASURED) -> str:
+    """A page of its own that plays the curve in a form by CSS: a box that goes there and back with it."""
     parts = {
-        "@TITLE@": html.escape(feel.name), "@TRANSITION@": _css(feel), "@CARD@": html.escape(card_text(feel)),
-        "@PICTURE@": card_picture(feel),
+        "@TITLE@": html.escape(feel.name), "@TRANSITION@": _css(points_of(feel, form)),
+        "@CARD@": html.escape(card_text(feel)), "@PICTURE@": card_picture(feel),
     }  # fmt: skip
     text = TEMPLATE.read_text(encoding="utf-8")
     for place, content in parts.items():

@@ -158,11 +158,22 @@ def choose_body(world: World, name: str | None = None) -> ChosenBody:
         listed = ", ".join(map(shown, names[:MOST_NAMED])) + (", ..." if len(names) > MOST_NAMED else "")
         hint = suggestion(name, names) or f"; there are {listed}"
         raise NoSuchBody(f"there is no body with springs called {shown(name)}{hint}")
+    return _described(world, name, springs_of(world, name))
+
+
+def springs_of(world: World, name: str) -> NDArray[np.int64]:
+    """Slots of the springs of the body of that name that do something."""
     prefix = "" if name == LOOSE else name
     mine = [k for k, spring in enumerate(world.spring_names) if spring.rpartition(":")[0] == prefix]
     slots = np.array(mine, dtype=np.int64)
-    slots = slots[_working(world)[slots]]
-    return _described(world, name, slots)
+    return np.asarray(slots[_working(world)[slots]])
+
+
+def body_at(world: World, particle: int) -> str | None:
+    """The name, as in `body_names`, of what the springs at a particle are of; None: there are none."""
+    ends = (world.particle_a == particle) | (world.particle_b == particle)
+    springs = np.flatnonzero(_working(world) & ends)
+    return None if not len(springs) else world.spring_names[int(springs[0])].rpartition(":")[0] or LOOSE
 
 
 def _working(world: World) -> NDArray[np.bool_]:

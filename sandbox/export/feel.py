@@ -6,15 +6,16 @@ apart both are. A curve is how far the way is done, 0 as it is let go and 1 in t
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.export.engines import choose_body
+from sandbox.export.engines import choose_body, springs_of
 from sandbox.export.numbers import percent, short
-from sandbox.export.release import NoCurve, StepResponse, particle_to_pull, release
+from sandbox.export.release import NoCurve, StepResponse, particle_to_pull, release_in_slices
 from sandbox.level.assembly.build_world import LevelWorld
+from sandbox.level.format.slices import as_part, at_once
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
@@ -22,6 +23,7 @@ from sandbox.physics.equation import (
     frequency_from_coefficients,
     highest_frequency,
 )
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.softness.body_motion import AT_REST, errors_of
 
 # Overshoots below this are none.
@@ -31,10 +33,12 @@ FITS, ROUNDS, SOUGHT = 40, 12, 10
 # The highest frequency that is tried, as a share of the highest that there is, and in a tick; halvings until one
 # settles in time.
 HIGH, HIGHEST, BISECTIONS = 0.99, 0.4, 40
-# How far the search goes at once, in logarithms.
-FARTHEST = 1.5
-# How near a thing's curve comes to what is asked for, until that is enough.
-NEAR = 0.01
+# How far the search goes at once, and where it has come to what it aimed at, in logarithms.
+FARTHEST, REACHED = 1.5, 0.03
+# How far off the single spring's Cs and Cd are at most that the search goes on from there alone.
+ENOUGH = 0.25
+# How near a thing's curve comes to what is asked for until that is enough, and what is as asked for a person.
+NEAR, AS_ASKED = 0.01, 0.02
 
 
 @dataclass(frozen=True)
@@ -149,13 +153,21 @@ def feel_of(world: LevelWorld, body: str | None = None, particle: str | None = N
 
     Raises NoSuchBody, NoCurve, and KeyError where there is no such particle.
     """
+    return at_once(feel_in_slices(world, body, particle, way))
+
+
+def feel_in_slices(
+    world: LevelWorld, body: str | None = None, particle: str | None = None, way: str = "down"
+) -> Generator[float, None, Feel]:
+    """As `feel_of`, a tick at a time; says how much is done, 0..1."""
     chosen = choose_body(world, body)
     particles = np.unique(np.concatenate([world.particle_a[chosen.springs], world.particle_b[chosen.springs]]))
     slot = particle_to_pull(world, particles) if particle is None else world.particle_slot(particle)
     down = np.array(world.settings.gravity) if any(world.settings.gravity) else np.array([0.0, -1.0])
     along = down if way == "down" else np.array([-down[1], down[0]])
     size = float(np.max(np.ptp(world.position[particles], axis=0)))
-    return card_of(chosen.name, release(world, slot, along.tolist(), size))
+    released = yield from release_in_slices(world, slot, along.tolist(), size)
+    return card_of(chosen.name, released)
 
 
 def card_of(name: str, released: StepResponse) -> Feel:
@@ -174,10 +186,15 @@ def pair_for(overshoot: float, settling: float, tick: float) -> tuple[float, flo
 
     Raises ValueError where no spring does: what is asked for takes less than two ticks, or overshoots by all or more.
     """
+    return at_once(_pair_in_slices(overshoot, settling, tick))
+
+
+def _pair_in_slices(overshoot: float, settling: float, tick: float) -> Generator[float, None, tuple[float, float]]:
     if not (0.0 <= overshoot < 1.0 and settling > 2.0 * tick):
         raise ValueError("an overshoot is from 0 up to 100 %, and settling takes more than two ticks")
     asked, wanted = overshoot, (0.0, 0.0)
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
+        yield number / ROUNDS
         # exp(-pi z / sqrt(1 - z^2)) of the overshoot, which a spring in ticks misses by a little.
         fall = -math.log(max(asked, UNSEEN)) / math.pi
         wanted = _settling_in(settling, fall / math.hypot(1.0, fall) if overshoot > UNSEEN else 1.0, tick)
@@ -208,42 +225,125 @@ def _steps(settling: float, tick: float) -> int:
     return math.ceil(8.0 * settling / tick) + 60
 
 
-def sought(
-    world: LevelWorld, overshoot: float, settling: float, measure: Callable[[LevelWorld], Feel]
-) -> tuple[float, float, Feel]:  # fmt: skip
-    """Cs and Cd of all springs with which a thing comes nearest to an overshoot [1] and a settling [s]; its card then.
+def material_of(world: LevelWorld, body: str) -> int | None:
+    """The material (index) that all springs of a body are of; None: they are of several.
+
+    Raises NoCurve where Cs and Cd do not apply to them.
+    """
+    springs = springs_of(world, body)
+    springs = springs[world.law[springs] != LAW_HOOKE]
+    if not len(springs):
+        raise NoCurve("its springs are classic Hooke springs, which have no Cs and Cd")
+    found = np.unique(world.material[springs])
+    return int(found[0]) if len(found) == 1 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Sought:
+    """What was found for an overshoot [1] and a settling [s]: Cs and Cd of the springs of a material, None: of all.
+
+    feel: the card of the thing with them. missed: how far it is from what was asked, as a share.
+    """
+
+    overshoot: float
+    settling: float
+    stiffness: float
+    damping: float
+    material: int | None
+    feel: Feel
+    missed: float
+
+    @property
+    def nearness(self) -> str:
+        """How near it is to what was asked, as the end of a sentence."""
+        if self.missed <= AS_ASKED:
+            return "as asked"
+        found = self.feel.numbers
+        return (
+            f"the closest that was found: {percent(found.overshoot)} and {short(found.settling)} s, "
+            f"of {percent(self.overshoot)} and {short(self.settling)} s asked"
+        )
+
+    def pair_text(self, world: LevelWorld) -> str:
+        """Cs and Cd in words, with the springs that they are for."""
+        least = max(min(self.stiffness, self.damping), 1e-9)
+        decimals = max(3, 2 - math.floor(math.log10(least)))
+        springs = "all springs" if self.material is None else f'the springs of "{world.material_names[self.material]}"'
+        return f"Cs {self.stiffness:.{decimals}f}, Cd {self.damping:.{decimals}f} for {springs}"
+
+
+# Gives the card of a thing in a world, in slices.
+Measure = Callable[[LevelWorld], Generator[float, None, Feel]]
+
+
+def sought(world: LevelWorld, overshoot: float, settling: float, measure: Measure, material: int | None) -> Sought:
+    """Cs and Cd of the springs of a material with which a thing comes nearest to an overshoot [1] and a settling [s].
 
     measure: gives its card in a copy of the world. What a thing makes of Cs and Cd, as a single spring, is brought to
     what is wanted (Broyden 1965). Raises ValueError, NoCurve.
     """
-    aimed = _worth(pair_for(overshoot, settling, 1.0 / world.settings.tick_rate))
-    there, slopes = aimed, np.eye(2)
-    before: Floats | None = None
-    change = np.zeros(2)
-    best: tuple[float, float, float, Feel] | None = None
-    for _ in range(SOUGHT):
-        pair = _pair(there)
+    return at_once(sought_in_slices(world, overshoot, settling, measure, material))
+
+
+def sought_in_slices(
+    world: LevelWorld, overshoot: float, settling: float, measure: Measure, material: int | None
+) -> Generator[float, None, Sought]:
+    """As `sought`, a tick at a time; says how much is done at least, 0..1."""
+    part = 1.0 / (SOUGHT + 1)
+    aim, tick = (overshoot, settling), 1.0 / world.settings.tick_rate
+    aimed = _worth((yield from as_part(_pair_in_slices(*aim, tick), 0.0, part)))
+    # From where it is now, or where a single spring would be: from what is nearer.
+    begins = [_pair_now(world, material), aimed]
+    there, at, slopes = begins.pop(), aimed, np.eye(2)
+    best: Sought | None = None
+    for number in range(1, SOUGHT + 1):
+        pair, feel = _pair(there), None
         tried = copy.deepcopy(world)
-        tried.set_coefficients(*pair, None)
+        tried.set_coefficients(*pair, material)
         try:
-            feel = measure(tried)
+            feel = yield from as_part(measure(tried), part * number, part * (number + 1))
         except NoCurve:
-            if best is None:
+            if best is None and not begins:
                 raise
-            break
-        miss = max(abs(feel.numbers.overshoot - overshoot), abs(feel.numbers.settling / settling - 1.0))
-        if best is None or miss < best[0]:
-            best = (miss, *pair, feel)
+        miss = math.inf if feel is None else _missed(feel, overshoot, settling)
+        is_better = feel is not None and (best is None or miss < best.missed)
+        change, now = there - at, np.zeros(2) if feel is None else _worth((feel.stiffness, feel.damping))
+        if best is not None and feel is not None and change.any() and not begins:
+            made = _worth((best.feel.stiffness, best.feel.damping))
+            slopes += np.outer(now - made - slopes @ change, change) / float(change @ change)
+        if feel is not None and is_better:
+            best, at = Sought(overshoot, settling, *pair, material, feel, miss), there
         if miss < NEAR:
             break
-        misses = _worth((feel.stiffness, feel.damping)) - aimed
-        if before is not None:
-            slopes += np.outer(misses - before - slopes @ change, change) / float(change @ change)
-        before = misses
-        change = np.clip(-np.linalg.lstsq(slopes, misses, rcond=None)[0], -FARTHEST, FARTHEST)
-        there = there + change
+        if miss > ENOUGH and begins:
+            there = begins.pop()
+            continue
+        begins.clear()
+        if feel is None or not is_better:
+            # Too far: springs that are that soft let it lie on something, or turn over.
+            there = 0.5 * (there + at)
+            continue
+        if float(np.max(np.abs(now - aimed))) < REACHED:
+            # It is that single spring by now, and its curve is another one nevertheless: aim to the other side of it.
+            aim = max(aim[0] + overshoot - feel.numbers.overshoot, 0.0), aim[1] * settling / feel.numbers.settling
+            try:
+                aimed = _worth((yield from as_part(_pair_in_slices(*aim, tick), *2 * (part * (number + 1),))))
+            except ValueError:
+                break
+        there = at + np.clip(np.linalg.lstsq(slopes, aimed - now, rcond=None)[0], -FARTHEST, FARTHEST)
     assert best is not None
-    return best[1], best[2], best[3]
+    return best
+
+
+def _missed(feel: Feel, overshoot: float, settling: float) -> float:
+    return max(abs(feel.numbers.overshoot - overshoot), abs(feel.numbers.settling / settling - 1.0))
+
+
+def _pair_now(world: LevelWorld, material: int | None) -> Floats:
+    # What Cs and Cd of the springs of a material are worth as they are, those in the middle where they differ.
+    mine = (world.material >= 0 if material is None else world.material == material) & world.spring_active
+    mine &= world.law != LAW_HOOKE
+    return _worth((float(np.median(world.stiffness[mine])), float(np.median(world.damping[mine]))))
 
 
 def _worth(pair: tuple[float, float]) -> Floats:

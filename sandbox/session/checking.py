@@ -19,7 +19,7 @@ from sandbox.session.check_run import checks_as_they_end
 from sandbox.session.compare.rollback import roll_back_level
 from sandbox.session.golden import SUFFIX, GoldenError, differences, read_golden
 from sandbox.session.looking import SECONDS, Looking
-from sandbox.session.outcome import outcome_data
+from sandbox.session.outcome import outcome_data, vain_goal
 from sandbox.session.probe import finite
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
@@ -59,7 +59,7 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     world = build_world(level)
     stability, beginning = report(world), tuple(_beginning(level, world))
     timed = _timed(level)
-    results, goal = [result for result, _ in timed], try_goal(level, Path(path))
+    results, goal, vain = [result for result, _ in timed], try_goal(level, Path(path)), vain_goal(level)
     again = None if rollback is None else roll_back_level(level, rollback)
     lines = (
         f"{name}: valid: {level.name}",
@@ -68,7 +68,7 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
         f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
         *(f"  start      {line}" for line in beginning),
         *(f"  check      {result.text}" for result in results),
-        *([f"  goal       {goal.text}"] if goal else []),
+        *([f"  goal       {goal.text if goal else vain}"] if goal or vain else []),
         *([f"  hands      {OPEN}"] if level.leaves_all_open else []),
         *([f"  rollback   {again}"] if again else []),
     )
@@ -83,6 +83,8 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     if goal is not None:
         won = outcome_data(goal.outcome, level.settings.tick_rate)
         data["goal"] = {"passed": goal.passed, "outcome": won, "text": goal.text}
+    elif vain:
+        data["goal"] = {"passed": True, "outcome": None, "text": vain}
     if level.leaves_all_open:
         data["hands"] = OPEN
     if again is not None:

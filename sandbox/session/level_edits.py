@@ -9,6 +9,7 @@ from typing import Any
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, suggestion
 from sandbox.level.reading.files import file_of, keep_file, level_data, parse_level, run_with
+from sandbox.level.reading.pictures import pictures_of, take_pictures
 
 # What a place holds that is not there.
 ABSENT = object()
@@ -101,19 +102,26 @@ def _at(data: Any, path: Sequence[str | int]) -> Any:
     return data
 
 
+def _made_again(level: Level, data: dict[str, Any], source: str) -> Level:
+    """A level of changed data of another, with the pictures of that. Raises LevelError."""
+    found = parse_level(json.dumps(data).encode(), source)
+    take_pictures(found, pictures_of(level))
+    return found
+
+
 def edited(level: Level, edits: Iterable[Edit]) -> Level:
     """A level with these edits. Raises LevelError for one that is none."""
     data = copy.deepcopy(level_data(level))
     for edit in edits:
         _put(data, edit.path, edit.after)
-    return parse_level(json.dumps(data).encode(), "the edited level")
+    return _made_again(level, data, "the edited level")
 
 
 def with_settings(level: Level, settings: Mapping[str, Any], source: str) -> Level:
     """A level that is run with other values of some of its settings, which source has given. Raises LevelError."""
     data = level_data(level)
     data["settings"] = {**data.get("settings", {}), **settings}
-    found = parse_level(json.dumps(data).encode(), source)
+    found = _made_again(level, data, source)
     keep_file(found, file_of(level), tuple({**dict.fromkeys(run_with(level)), **settings}))
     return found
 
@@ -139,7 +147,7 @@ def with_value(level: Level, path: str, value: Any) -> Level:
         part = str(error.args[0]) if error.args else path
         near = suggestion(part, _names(data))
         raise LevelError("the level", [(path, f"there is no such place{near}")]) from None
-    return parse_level(json.dumps(data).encode(), path)
+    return _made_again(level, data, path)
 
 
 def _put(data: Any, path: Sequence[str | int], value: Any) -> None:

@@ -41,6 +41,11 @@ def outcome(level: Level, state: World | Snapshot) -> Outcome | None:
     return Outcome(True, action.win, kept or stars_of(action.stars, level, state, tick), tick, rule)
 
 
+def vain_goal(level: Level) -> str:
+    """What is said of a level whose goal is told and that no rule wins; "" of any other."""
+    return f'No rule wins the level, and its goal says: "{level.goal}"' if level.goal and not level.has_goal else ""
+
+
 def outcome_text(found: Outcome, rate: int) -> str:
     """An outcome in words: "won at 12.40 s with 3 stars"; rate: ticks in a second."""
     seconds = found.tick / rate

@@ -48,7 +48,7 @@ def lose(level, path=None):
 
 
 def test_an_edit_shows_in_the_title_and_saving_writes_it_as_it_is(driver, path):
-    assert "Small - Level editor" in driver.app.title()
+    assert "Small - Level editor (small.json)" in driver.app.title()
     draw(driver)
     assert "Small* - Level editor" in driver.app.title()
     driver.key(pygame.K_s, CTRL)
@@ -422,3 +422,12 @@ def test_a_path_that_cannot_be_written_is_kept_for_the_next_try(edit, tmp_path):
     driver.choose("Save under another name")
     driver.frames(2)
     assert driver.app.ui.focus.text == "/proc/bridge"
+
+
+def test_the_editor_begins_without_a_file_as_a_new_level_does(edit):
+    driver = edit()
+    driver.app.documents.begin("")
+    driver.frames(2)
+    begun = driver.editor.document.level
+    driver.key(pygame.K_n, CTRL)
+    assert begun.walls is not None and driver.editor.document.level == begun

@@ -51,6 +51,16 @@ def test_parts_the_selection_and_the_ghost_are_seen(driver):
     assert np.abs(pixels(driver)[x - 4 : x + 4, y - 4 : y + 4] - plain[x - 4 : x + 4, y - 4 : y + 4]).max() > 20
 
 
+def test_undo_brings_back_into_view_what_is_selected_then(driver):
+    driver.key(pygame.K_a, pygame.KMOD_CTRL)
+    for _ in range(3):
+        driver.key(pygame.K_d, pygame.KMOD_CTRL)
+    assert not driver.editor.contains(driver.at(*small_level().bodies[0].start))
+    for _ in range(3):
+        driver.key(pygame.K_z, pygame.KMOD_CTRL)
+    assert driver.editor.contains(driver.at(*small_level().bodies[0].start))
+
+
 def test_the_rulers_mark_where_the_pointer_is(driver):
     driver.move(driver.at(2.35, 1.3))
     before = pixels(driver)

@@ -225,12 +225,12 @@ BUILDS = {"pinned rope": draw_rope, "loaded bridge": draw_bridge, "jelly wheel":
 
 @pytest.fixture
 def maker(screen, tmp_path, edit):
-    """A person before an empty sheet."""
+    """A person before a new place."""
     twin = edit()
     twin.app.display.window.size = WINDOW_SIZE
     twin.frames(2)
     twin.app.guide.may_offer = True
-    twin.app.documents.new()
+    twin.app.documents.new_place()
     twin.frames(2)
     folder = tmp_path / "person"
     (folder / "pictures").mkdir(parents=True)

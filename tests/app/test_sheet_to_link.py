@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.playing import page_of
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.level.format.quantities import replaced
+from sandbox.level.format.slices import at_once
 from sandbox.level.reading.files import read_level
 from sandbox.level.rules.player_limits import BudgetDef, PlayerLimits
 from sandbox.session.compare.comparison import verify

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.bring.bring import bring
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.kinds.bodies import expansion
 from sandbox.session.session import Session
 from tests.support.foreign_files import tiled
@@ -280,3 +281,58 @@ def test_a_drawing_may_be_stretched(tmp_path):
 def test_rules_of_a_style_sheet_hold_where_they_would_on_a_screen(rule, is_seen, tmp_path):
     drawing = f'<style>{rule}</style><rect class="a" width="10" height="10"/><rect x="50" width="10" height="10"/>'
     assert len(widths(tmp_path, drawing)) == 1 + is_seen
+
+
+# ---- maps of older programs, and tiles without shapes
+
+
+def test_tiles_that_an_older_tiled_lists_by_number_have_their_shapes_and_properties(tmp_path):
+    ramp = [{"x": 0, "y": 16}, {"x": 16, "y": 0}, {"x": 16, "y": 16}]
+    old = {
+        "firstgid": 1, "tilewidth": 16, "tileheight": 16, "tileproperties": {"0": {"solid": True}, "1": {"name": "r"}},
+        "tiles": {"1": {"objectgroup": {"objects": [{"x": 0, "y": 0, "polygon": ramp}]}}},
+    }  # fmt: skip
+    layers = [{"type": "tilelayer", "name": "Tile Layer 1", "width": 3, "height": 1, "data": [1, 2, 3]}]
+    got = brought(tmp_path, tiled(width=3, height=1, tilesets=[old], layers=layers), "a.tmj")
+    block, ramp = (sorted(piece.polygon) for piece in got.level.terrain)
+    assert block == [(-1.0, 0.0), (-1.0, 1.0), (0.0, 0.0), (0.0, 1.0)]
+    assert ramp == [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]
+    assert got.left_out == ["1 tile without a collision shape"]
+
+
+@pytest.mark.parametrize(("name", "pieces"), [("ground", 1), ("things", 0)])
+def test_tiles_without_shapes_are_whole_where_their_layer_is_solid(name, pieces, tmp_path):
+    layers = [
+        {"type": "objectgroup", "name": "collision", "objects": [{"x": 0, "y": 64, "width": 8, "height": 8}]},
+        {"type": "objectgroup", "name": name, "objects": [{"gid": 1, "x": 32, "y": 32, "width": 32, "height": 16}]},
+    ]
+    got = brought(tmp_path, tiled(layers=layers), "a.tmj")
+    assert len(got.level.terrain) == 1 + pieces
+    if pieces:
+        assert np.ptp(max(got.level.terrain, key=lambda piece: piece.polygon[0][1]).polygon, axis=0).tolist() == [2, 1]
+
+
+def test_a_page_behind_thin_lines_is_a_background_and_a_word_says_how_lines_come_in(tmp_path):
+    line = '<path stroke="red" fill="none" stroke-width=".2" d="M5 5L9 30"/>'
+    data = f'<svg width="80" height="40"><rect width="80" height="40"/>{line}</svg>'.encode()
+    with pytest.raises(LevelError, match=r"1 open line too thin for a jelly \(as ground it comes in\)"):
+        brought(tmp_path, data, "a.svg")
+    assert len(brought(tmp_path, data, "a.svg", "ground").level.terrain) == 1
+
+
+def test_a_tile_set_is_called_one(tmp_path):
+    with pytest.raises(LevelError, match="is a Tiled tile set, and no map"):
+        brought(tmp_path, b'{"columns": 2, "image": "a.png", "imagewidth": 32, "tilewidth": 16, "tileheight": 16}')
+
+
+@pytest.mark.parametrize(("end", "is_closed"), [("10.5 11", True), ("10.5 16", False)])
+def test_a_stroke_whose_ends_lie_within_its_width_is_closed(end, is_closed, tmp_path):
+    path = f'<path stroke="red" fill="none" stroke-width="2" d="M10 10H40V40H10L{end}"/>'
+    data = f'<svg width="400" height="60">{path}<rect x="380" width="20" height="9"/></svg>'.encode()
+    assert len(brought(tmp_path, data, "a.svg").level.bodies) == 1 + is_closed
+
+
+def test_a_drawing_without_a_page_has_no_background_and_signs_part_numbers(tmp_path):
+    data = b'<svg><rect width="300" height="100"/><polygon points="400,0 4e2-50,450-50\t450 0"/></svg>'
+    got = brought(tmp_path, data, "a.svg")
+    assert len(got.level.bodies) == 2 and got.left_out == []

@@ -9,10 +9,13 @@ from PIL import Image, ImageDraw
 
 from sandbox.bring.bring import bring
 from sandbox.bring.making import with_floor
+from sandbox.bring.picture import cut_out
+from sandbox.bring.sketch import Pixels
 from sandbox.cli import main
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.picture import PICTURE_LIMIT, check_picture, size_of
 from sandbox.level.kinds.bodies import expansion
-from sandbox.level.reading.files import parse_level, read_level
+from sandbox.level.reading.files import parse_level, read_level, write_level
 from sandbox.session.session import Session
 from tests.support.foreign_files import SVG, TMX, png, rube, samples, tiled
 
@@ -127,6 +130,26 @@ def test_a_picture_gives_outlines_holes_and_mean_colours(tmp_path):
     assert ring.look.colour == "#C82828" and box.look.colour == "#28B450"
     left, bottom, right, top = extent(level)
     assert right - left == pytest.approx(10.0, rel=0.02) and top - bottom == pytest.approx(10.0 * 300 / 570, rel=0.03)
+
+
+def test_what_is_made_of_a_picture_wears_its_part_of_it(tmp_path):
+    found = brought(tmp_path, png(), "a.png")
+    assert found.left_out == []
+    write_level(found.level, tmp_path / "a.json")
+    worn = [Image.open(tmp_path / f"{name}-skin.png") for name in ("a", "a-2")]
+    assert [body.look.picture for body in read_level(tmp_path / "a.json").bodies] == ["a-skin.png", "a-2-skin.png"]
+    # Each as large as its part, and painted where it was transparent, from what is near.
+    assert np.allclose([picture.size for picture in worn], [(300, 300), (180, 200)], atol=6)
+    for picture, colour in zip(worn, [(200, 40, 40), (40, 180, 80)], strict=True):
+        assert np.abs(np.asarray(picture).astype(int) - colour).max() < 40
+
+
+def test_a_large_picture_is_made_smaller_until_it_can_be_worn():
+    noise = np.random.default_rng(1).integers(0, 256, (400, 2400, 4), dtype=np.uint8)
+    data = cut_out(Pixels(noise, (0.0, 0.0), 0.01), (0.0, 0.0, 24.0, 4.0))
+    check_picture(data)
+    wide, high = size_of(data)
+    assert len(data) > 0.7 * PICTURE_LIMIT and wide / high == pytest.approx(6.0, rel=0.01)
 
 
 def test_a_picture_without_transparency_says_what_to_do(tmp_path):

@@ -130,6 +130,16 @@ def test_walls_are_drawn_from_corner_to_corner_with_the_surface_that_the_tool_ha
     assert (walls.box, walls.friction, walls.restitution) == ((-1.0, 1.0, 3.0, 4.0), 0.25, None)
 
 
+def test_water_is_drawn_from_corner_to_corner_as_dense_as_the_tool_says():
+    drawing = TOOLS["water"].drawing(reach=0.05)
+    drawing.set_option("density", 25.0)
+    for x in (-1.0, 3.0):
+        drawing.down(Snap((x, 2.0 - x)))
+        drawing.up(Snap((x, 2.0 - x)))
+    (zone,) = drawing.done(Document(empty_level())).level.zones
+    assert (zone.id, zone.box, zone.water.density) == ("water", (-1.0, -1.0, 3.0, 3.0), 25.0)
+
+
 def test_terrain_is_moved_turned_scaled_mirrored_and_lined_up_like_everything():
     document = square()
     assert corners(move(document, 1.0, -1.0))[0] == (1.0, -1.0)

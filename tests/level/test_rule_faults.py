@@ -65,6 +65,8 @@ QUESTIONS = {
                           "rules.0.when: says each_of twice; a rule is of each of one list"),
     "a metric of the whole": ({"metric": "settled", "any_of": ["rope", "ball"]}, 'rules.0.when.any_of: "settled" is '
                               "measured of the whole level; take the particle out"),
+    "several that break": ({"breaks": "rope", "any_of": ["rope"]}, "rules.0.when.any_of: belongs to another question "
+                           "than breaks; ask the metric broken_springs of several, at_least 1"),
     "a field of another question": ({"time": 1, "at_most": 2}, "rules.0.when.at_most: belongs to another question than "
                                     "time; take it out"),
 }  # fmt: skip

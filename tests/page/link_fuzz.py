@@ -15,9 +15,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.level.document.model import Level
+from sandbox.level.format.slices import at_once
 from sandbox.page.page import KERNELS, WEB
 from sandbox.page.start import adding, start_of
 from sandbox.physics.snapshot import state_hash

@@ -14,15 +14,19 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import THEMES
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Renderer
+from sandbox.app.share.playing import page_of
+from sandbox.level.reading.files import read_level
 from sandbox.session.session import Session
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import FRAMES, SETTLED, START_OVER, opened
 from tests.page.pointing import click, drag
 from tests.support.wholes import some_and_whole
+from tests.support.worn import BLUE, GREEN, RED, YELLOW, level_file
 
 TICKS, SIZE, BLOCK = 90, (1280, 720), 16
-BELTS = str(Path(__file__).parents[2] / "docs" / "cookbook" / "belts.json")
+COOKBOOK = Path(__file__).parents[2] / "docs" / "cookbook"
+BELTS, PICTURES = str(COOKBOOK / "belts.json"), str(COOKBOOK / "pictures.json")
 # Blocks of pixels differ by so little on average, and no more than one in a hundred by so much, of 255 a channel.
 USUAL, MOST = 2.5, 25.0
 DRAW = """(() => {{
@@ -51,8 +55,8 @@ def _blocks(picture: pygame.Surface) -> NDArray[np.float64]:
 @pytest.mark.parametrize(
     "name",
     some_and_whole(
-        ("jelly_wheel", "suspension_car", BELTS),
-        ["jelly_wheel", "curtain", "walker", "pinball", "suspension_car", BELTS],
+        ("jelly_wheel", "suspension_car", BELTS, PICTURES),
+        ["jelly_wheel", "curtain", "walker", "pinball", "suspension_car", BELTS, PICTURES],
     ),
 )
 def test_a_page_looks_as_the_desktop_does(browser: Browser, tmp_path: Path, name: str) -> None:
@@ -132,3 +136,22 @@ def test_drawn_wood_steel_and_rope_look_like_these_where_a_level_has_none_of_the
     assert seen["wood"].std(axis=(0, 1)).max() > 2 * seen["steel"].std(axis=(0, 1)).max()
     assert seen["rope"].mean(axis=1).std(axis=0).max() > 8
     assert tab.evaluate("page.toy.run.commands.length") >= 3 and tab.faults == []
+
+
+def test_a_page_draws_what_a_body_wears_where_it_is(browser: Browser, tmp_path: Path) -> None:
+    tab = opened(browser, tmp_path, page_of(read_level(level_file(tmp_path))))
+    tab.evaluate(FRAMES)
+    # Turned by 90 degrees, moved and stretched: colours of the four quarters, at their middles.
+    found = tab.evaluate("""(() => {
+      const { toy } = page, { world, canvas } = toy, at = world.view('state.position'), ratio = toy.picture.ratio;
+      toy.pause();
+      const moved = (x, y) => [0.5 - 1.5 * y, x];
+      for (let k = 0; k < at.length; k += 2) [at[k], at[k + 1]] = moved(at[k], at[k + 1]);
+      toy.picture.draw(toy.camera, toy.theme, at.slice(), 1, 0);
+      return [[-1, 0.5], [1, 0.5], [-1, -0.5], [1, -0.5]].map((place) => {
+        const [x, y] = toy.camera.toPixels(...moved(...place));
+        return [...canvas.getContext('2d').getImageData(x * ratio, y * ratio, 1, 1).data].slice(0, 3);
+      });
+    })()""")
+    assert np.abs(np.array(found) - np.array([RED, GREEN, BLUE, YELLOW])).max() <= 2
+    assert tab.faults == []

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from sandbox import Session, load_level
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.cli import main
+from sandbox.level.format.slices import at_once
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay
 from tests.page.browser import page_address

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from sandbox import Session, load_level
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.commands import (
     AddBody,
@@ -23,6 +22,7 @@ from sandbox.commands import (
     SetDrive,
     SetFirmness,
 )
+from sandbox.level.format.slices import at_once
 from sandbox.level.kinds.jelly import Jelly, JellyDef
 from sandbox.replay import Replay, read_replay
 from sandbox.session.compare.comparison import verify

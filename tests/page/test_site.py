@@ -137,9 +137,11 @@ def test_the_keyboard_reaches_every_level_and_opens_it(browser: Browser, address
 def test_levels_of_ones_own_are_a_site_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     own = tmp_path / "own.json"
     own.write_bytes((ROOT / "levels" / "rope.json").read_bytes().replace(b'"Rope"', b'"My <rope>"'))
-    assert main(["site", str(own), "pinball", "-o", str(tmp_path / "site"), "--title", "Mine"]) == 0
+    assert main(["site", str(own), "low_door", "-o", str(tmp_path / "site"), "--title", "Mine"]) == 0
     text = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
-    assert "My &lt;rope&gt;" in text and 'href="levels/pinball.html"' in text and "<h1>Mine</h1>" in text
+    assert "My &lt;rope&gt;" in text and 'href="levels/low_door.html"' in text and "<h1>Mine</h1>" in text
+    # Its author's solution is beside it; the other level has none.
+    assert text.count("class=solved>Solved in ") == 1
     assert (tmp_path / "site" / "pictures" / "own-dark.jpg").is_file()
     assert "2 levels" in capsys.readouterr().out
 

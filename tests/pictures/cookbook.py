@@ -68,6 +68,7 @@ SECTIONS: dict[str, dict[str, Recipe]] = {
         "check": Recipe(2.0, "light"),
         "check_keys": Recipe(1.75, "light"),
         "skins": Recipe(2.0),
+        "pictures": Recipe(0.7, "light"),
         "camera_follows": Recipe(2.5, "light"),
         "extras": Recipe(1.0, "light"),
     },

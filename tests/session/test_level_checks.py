@@ -215,6 +215,14 @@ def test_the_check_of_a_file_says_what_overlaps_and_what_sinks(tmp_path):
     assert said.data["start"] == [sinks, overlap] and said.passed
 
 
+def test_the_check_of_a_file_says_that_no_rule_wins_the_goal_it_tells(tmp_path):
+    file = tmp_path / "goal.json"
+    file.write_text(json.dumps({**LEVEL, "format": "spring-sandbox/level", "version": 4, "goal": "Bring it home"}))
+    said = check_level(str(file))
+    text = 'No rule wins the level, and its goal says: "Bring it home"'
+    assert f"  goal       {text}" in said.lines and said.data["goal"]["text"] == text and said.passed
+
+
 def test_the_digits_of_what_was_measured_show_on_which_side_of_its_bound_it_is():
     check = CheckDef(name="far", metric="x", body="slab", at_least=-3.0)
     assert [value_text(check, value, 4) for value in (-3.00001, -2.99999, -3.0, -2.5, float("nan"))] == [

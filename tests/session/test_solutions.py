@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.app.base.loop import at_once
 from sandbox.cli import main
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.quantities import replaced
+from sandbox.level.format.slices import at_once
 from sandbox.level.reading.files import read_level
 from sandbox.physics.jit import COMPILED
 from sandbox.session.replay.reader import read_replay

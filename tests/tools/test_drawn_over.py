@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.runs_for_pages import run_for_pages
 from sandbox.editor.document import Document
 from sandbox.editor.edits.bake import keep_added
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.look import PALETTE
+from sandbox.level.format.slices import at_once
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify

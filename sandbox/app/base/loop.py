@@ -2,12 +2,9 @@
 
 import time
 from collections import defaultdict, deque
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeVar
-
-Made = TypeVar("Made")
 
 # Frames that the loop draws at most [1/s].
 FRAME_RATE = 60
@@ -53,16 +50,6 @@ class TickClock:
         """Pause, and ask for one tick."""
         self.paused = True
         self.single_steps += 1
-
-
-def at_once(slices: Generator[object, None, Made]) -> Made:
-    """The result of work that is done in slices, made without a pause."""
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            made: Made = end.value
-            return made
 
 
 class SliceQueue:

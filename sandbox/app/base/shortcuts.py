@@ -103,6 +103,7 @@ SHORTCUTS = (
     Shortcut("let_go", ("Escape",), "Let go of everything; back to the hand", "Tools", "play"),
     Shortcut("hand", ("T",), "Hand: gentle, normal or strong", "Tools", "play"),
     Shortcut("melt", ("Z",), "Melt, or make whole again", "Tools", "play"),
+    Shortcut("feel", ("Shift+Q",), "Feel: how the thing at the cursor comes back", "Tools", "play"),
     Shortcut("free", ("J",), "Free what is stuck in something", "Tools", "play"),
     Shortcut("bring_back", ("Shift+J",), "Bring back what left the picture", "Tools", "play"),
     Shortcut("details", ("Shift+D",), "Details of what went out of bounds", "Tools", "play"),

@@ -20,7 +20,9 @@ from sandbox.app.draw.colours import (
 from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.look import BALLS, GROUNDS, LINES, PALETTE, SKINS, colour_of
+from sandbox.level.format.picture import Picture
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.reading.pictures import pictures_of
 
 # What a word in a name says of its stuff; the first that fits counts.
 _WORDS = {
@@ -51,7 +53,10 @@ _STUFF_COLOURS = {"wood": WOOD, "stone": STONE, "brick": BRICK, "cloth": CLOTH, 
 
 @dataclass(frozen=True)
 class Look:
-    """The look of a body. skin: one of SKINS or tyre, "" = its lines alone; colours are 0xRRGGBB."""
+    """The look of a body. skin: one of SKINS or tyre, "" = its lines alone; colours are 0xRRGGBB.
+
+    picture: what it wears in place of its skin, None where it wears none, or none that was read.
+    """
 
     skin: str
     line: str
@@ -60,6 +65,7 @@ class Look:
     width: float = 1.0
     panel: int | None = None
     window: tuple[int, ...] = ()
+    picture: Picture | None = None
 
 
 def word_in(name: str, words: dict[str, str] = _WORDS) -> str:
@@ -91,8 +97,9 @@ def is_filled(body: BodyDef) -> bool:
     return body.type == "jelly" or bool(body.__dict__.get("triangles"))
 
 
-def body_looks(level: Level) -> list[Look]:
-    """The look of each body."""
+def body_looks(level: Level, pictures: Mapping[str, Picture] | None = None) -> list[Look]:
+    """The look of each body; pictures: by name, None = the level's own."""
+    pictures = pictures_of(level) if pictures is None else pictures
     names, toys = list(PALETTE.values()), 0
     faces = level.look.faces if level.look is not None else None
     may_have_faces = len(level.bodies) <= MOST_FACES if faces is None else faces
@@ -112,8 +119,11 @@ def body_looks(level: Level) -> list[Look]:
         else:
             colour = PAINTS.get(body.type, PAINTS["mesh"])
         panel = colour_of(said["panel"]) if "panel" in said else None
-        face = bool(said.get("face", skin == "jelly" and may_have_faces))
-        looks.append(Look(skin, line, colour, face, said.get("width", 1.0), panel, said.get("window", ())))
+        picture = said.get("picture")
+        if picture is not None and picture.data is None:
+            picture = pictures.get(picture)
+        face = bool(said.get("face", skin == "jelly" and may_have_faces and picture is None))
+        looks.append(Look(skin, line, colour, face, said.get("width", 1.0), panel, said.get("window", ()), picture))
     return looks
 
 

@@ -12,11 +12,11 @@ from pathlib import Path
 import platformdirs
 import pygame
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.base.recent_pictures import RecentPictures
 from sandbox.app.draw.colours import THEME_NAMES, ThemeName
 from sandbox.app.draw.picture import crop_of, draw_picture, run_ahead
 from sandbox.level.document.model import Level
+from sandbox.level.format.slices import at_once
 from sandbox.level.format.writing import unfinished
 from sandbox.level.reading.files import read_level, shipped_folder, shipped_levels
 

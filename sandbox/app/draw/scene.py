@@ -1,6 +1,7 @@
 """Scene: what is drawn of a level, as plain data for a page that draws it by itself."""
 
 import base64
+import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
@@ -31,9 +32,11 @@ from sandbox.app.draw.things.soft import (
     shape_of,
 )
 from sandbox.app.draw.things.wheels import DrawnWheel, added_balls
+from sandbox.app.draw.things.worn import round_of, worn_shape
 from sandbox.app.draw.water import DrawnPool, Pools
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
+from sandbox.level.format.picture import Picture
 from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot, take
@@ -68,6 +71,11 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         ],
         "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
+        "worn": {
+            _key_of(each): base64.b64encode(each.data or b"").decode()
+            for each in (actor.look.picture for actor in slots.actors)
+            if each is not None
+        },
     }
 
 
@@ -172,27 +180,31 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     }
     if look.skin == "lattice":
         return made
+    if look.picture is not None:
+        made["picture"] = _key_of(look.picture)
     if actor.is_filled:
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
         made["keeps_area"] = actor.keeps_areas
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
         loops = [loop for piece in actor.filling(there).pieces for loop in piece.loops]
-        made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
+        whole = shape_of(actor, loops, there, radius) if look.picture is None else worn_shape(actor, loops, radius)
+        made["shapes"] = [_shape(whole)]
         if len(triangles):
             place, face_radius = actor.spot(spot_of)
             made["spot"] = [round(float(value), DIGITS) for value in (*place, face_radius)]
             made["face"] = look.face and look.skin in SOFT_SKINS
+    elif look.picture is not None and (around := round_of(actor, there)) is not None:
+        made["shapes"], made["is_fan"] = [_shape(worn_shape(actor, around[1], radius))], True
+        made["needs"] = _closed(actor)
     elif actor.body.type == "ring":
-        made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
+        made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], _closed(actor)
         # Where something is, or will be, tied to it.
         tied = np.concatenate([snapshot.particle_a, snapshot.particle_b])[np.tile(snapshot.material >= 0, 2)]
         made["knots"] = [slot for slot in actor.slots.tolist() if np.count_nonzero(tied == slot) > 2]
     elif actor.body.type == "wheel" and look.skin:
-        wheel, count = DrawnWheel(actor, there, radius), int(made["segments"])
-        numbers = actor.made.numbers
-        made["shapes"], made["wheel"] = [_shape(wheel.shape)], _wheel(wheel)
-        made["needs"] = actor.springs[(numbers >= count) & (numbers < 3 * count)].tolist()
+        wheel = DrawnWheel(actor, there, radius)
+        made["shapes"], made["wheel"], made["needs"] = [_shape(wheel.shape)], _wheel(wheel), _closed(actor)
     elif look.panel is not None and len(hull := hull_of(actor.made.form, actor.pairs)):
         window = [k for k in look.window if k < len(actor.slots)]
         made["shapes"] = [_shape(Shape([actor.slots[hull]], "rubber", look.panel, 0, extra=PANEL_OUT, keep=0.2))]
@@ -202,6 +214,19 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
             pane = Shape([actor.slots[np.array(window)]], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2)
             made["shapes"].append(_shape(pane))
     return made
+
+
+def _key_of(picture: Picture) -> str:
+    """What a page calls a picture: two of one name may differ."""
+    return hashlib.blake2b(picture.data or b"", digest_size=8).hexdigest()
+
+
+def _closed(actor: Actor) -> list[int]:
+    """The springs that a ring or a wheel has around it: without one of them it is not whole."""
+    if actor.body.type == "ring":
+        return actor.springs.tolist()
+    count, numbers = int(actor.body.__dict__["segments"]), actor.made.numbers
+    return actor.springs[(numbers >= count) & (numbers < 3 * count)].tolist()
 
 
 def _shape(shape: Shape) -> dict[str, Any]:

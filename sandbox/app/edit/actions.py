@@ -241,6 +241,8 @@ def _step(screen: Editing, by: int) -> None:
         screen.say(f"There is nothing to {'undo' if by < 0 else 'redo'}.")
         return
     screen.step_to(history.index + by)
+    if screen.document.selection:
+        screen.reveal(screen.document.selection)
 
 
 def _duplicate(screen: Editing) -> None:

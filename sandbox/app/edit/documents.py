@@ -44,15 +44,18 @@ class DocumentActions:
     # Opening.
 
     def begin(self, name: str) -> None:
-        """Edit a level file, also one to come, or a shipped level by its name; "" = an empty sheet, at the start."""
+        """Edit a level file, also one to come, or a shipped level by its name; "" = a new place, at the start."""
+        if not name:
+            self.new_place()
+            return
         self.new()
-        if name and is_brought(name):
+        if is_brought(name):
             self.app.files.open_path(name)
-        elif name and os.path.lexists(name):
+        elif os.path.lexists(name):
             self.open(name)
-        elif name and _is_to_come(name):
+        elif _is_to_come(name):
             self._begin_file(Path(name))
-        elif name:
+        else:
             try:
                 self.edit_level(load_level(name))
             except LevelError as error:

@@ -42,6 +42,7 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import LASSO, TOOLS
 from sandbox.editor.tools.snap import Snap, snap
+from sandbox.level.format.level_error import one_line
 
 # Sizes in layout units.
 SIDE_WIDTH = 292.0
@@ -63,10 +64,8 @@ class EditScreen:
     mode: Mode = "edit"
 
     def __init__(self, app: Application, history: History, level_file: LevelFile) -> None:
-        self.app = app
+        self.app, self.history, self.level_file = app, history, level_file
         self.ui: Ui = app.ui
-        self.history = history
-        self.level_file = level_file
         # Whether the person wants the panel at the side; None: it is shown where there is room.
         self._wants_side: bool | None = None
         self.side: Side | None = None
@@ -142,6 +141,11 @@ class EditScreen:
         if self._box is None or self._box[0] is not scene or self._box[1] is not selection:
             self._box = (scene, selection, scene.bounds(selection) if selection else None)
         return self._box[2]
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the level's file, None: it has none yet."""
+        return None if self.level_file.path is None else self.level_file.path.parent
 
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
         """Make an edit a step of the history; False, and a line for the person, where it cannot be made.
@@ -558,8 +562,10 @@ class EditScreen:
         return [*parts, *counted_parts(len(scene.position), len(scene.particle_a))]
 
     def title(self) -> str:
-        """Title of the window: the level, * where it is not saved, and that it is edited."""
-        return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
+        """Title of the window: the level, * where it is not saved, and its file where that is called otherwise."""
+        name, path = self.document.level.name, self.level_file.path
+        file = f" ({one_line(path.name)})" if path is not None and path.stem != name else ""
+        return name + ("" if self.history.is_saved else "*") + " - Level editor" + file
 
     def states(self) -> list[str]:
         """State words for the window's title: the tool, and how many things are selected."""

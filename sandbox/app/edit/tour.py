@@ -49,9 +49,9 @@ class Guide:
     # What the person can do.
 
     def offer(self) -> None:
-        """Ask whether the person wants the tour, the first time that they see an empty sheet."""
+        """Ask whether the person wants the tour, the first time that they see a sheet on which nothing moves yet."""
         editor = self._documents.editor
-        if self.may_offer and editor is not None and not editor.scene.items and not preference(SEEN):
+        if self.may_offer and editor is not None and not len(editor.scene.position) and not preference(SEEN):
             set_preference(SEEN, True)
             self._offers = True
 

@@ -38,6 +38,7 @@ from sandbox.editor.storage.preferences import played_levels, recent_levels
 from sandbox.editor.storage.scene_shelf import scenes_in
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, shipped_levels
+from sandbox.level.reading.pictures import read_pictures
 from sandbox.physics import jit
 from sandbox.session.scene import SUFFIX
 
@@ -275,6 +276,7 @@ class Gallery:
                 return
         try:
             level = parse_level(content, str(path))
+            read_pictures(level, path.parent, str(path))
         except LevelError as error:
             card.show_fault(error.faults[0])
             return

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 import pygame
@@ -44,6 +45,30 @@ class GraphLine:
         return DASHES[self.style % len(DASHES)]
 
 
+class Axes(NamedTuple):
+    """Where a chart has drawn: inside [pixels], over a span of time [s], from the lowest value to the highest."""
+
+    inside: pygame.Rect
+    span: tuple[float, float]
+    heights: tuple[float, float]
+
+    def x_of(self, seconds: Any) -> Any:
+        """Where a time is [pixels]; or times, as an array."""
+        start, end = self.span
+        return self.inside.left + (seconds - start) / (end - start) * (self.inside.width - 1)
+
+    def y_of(self, value: Any) -> Any:
+        """Where a value is [pixels]; or values, as an array."""
+        low, high = self.heights
+        return self.inside.bottom - 1 - (value - low) / (high - low) * (self.inside.height - 1)
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Time [s] and value at a pixel."""
+        (start, end), (low, high), inside = self.span, self.heights, self.inside
+        seconds = start + (x - inside.left) / (inside.width - 1) * (end - start)
+        return seconds, low + (inside.bottom - 1 - y) / (inside.height - 1) * (high - low)
+
+
 def nice_step(span: float, most: float) -> float:
     """The smallest of 1, 2 and 5 times a power of ten that divides a span into at most this many parts."""
     least = span / max(most, 1.0)
@@ -72,13 +97,20 @@ class Chart:
     def _px(self, units: float) -> int:
         return round(units * self._scale)
 
+    def title(self, text: str) -> None:
+        """Write a line above the chart."""
+        picture = self._bold.render(text, True, TEXT)
+        left, top = self._place.left + self._px(LEFT), self._place.top - self._px(TOP)
+        self._surface.blit(picture, picture.get_rect(bottomleft=(left, top)))
+
     def draw(
         self, lines: Sequence[GraphLine], span: tuple[float, float], unit: str, *, from_zero: bool = False,
         cursor: float | None = None, now: float | None = None, hint: str = "",
-    ) -> None:  # fmt: skip
+        heights: tuple[float, float] | None = None,
+    ) -> Axes:  # fmt: skip
         """Draw lines over a span of time [s]; cursor: pixel from the left whose values are shown; now: a mark [s].
 
-        hint: what is said where there is no line.
+        hint: what is said where there is no line. heights: the lowest value and the highest; None: those of the lines.
         """
         names = max((self._bold.size(line.name)[0] for line in lines), default=0) + self._px(SAMPLE + 14)
         names = min(names, round(NAMES_SHARE * self._place.width)) if lines else self._px(8)
@@ -87,31 +119,30 @@ class Chart:
             max(20, self._place.width - self._px(LEFT) - names), max(20, self._place.height - self._px(TOP + BOTTOM)),
         )  # fmt: skip
         pygame.draw.rect(self._surface, FIELD, inside, border_radius=self._px(4))
-        low, high = _range(lines, from_zero)
-        self._draw_grid(inside, span, (low, high), unit)
+        axes = Axes(inside, span, heights or _range(lines, from_zero))
+        self._draw_grid(axes, unit)
         if not lines:
             text = self._font.render(hint, True, MUTED)
             self._surface.blit(text, text.get_rect(center=inside.center).clamp(inside))
-            return
+            return axes
         clip = self._surface.get_clip()
         self._surface.set_clip(inside.clip(clip))
         for line in reversed(lines):
-            self._draw_line(line, inside, span, (low, high))
+            self._draw_line(line, axes)
         self._surface.set_clip(clip)
         if now is not None and span[0] <= now <= span[1]:
-            x = inside.left + (now - span[0]) / (span[1] - span[0]) * (inside.width - 1)
+            x = axes.x_of(now)
             pygame.draw.line(self._surface, TEXT, (x, inside.top), (x, inside.bottom - 1))
-        self._draw_names(lines, inside, (low, high))
+        self._draw_names(lines, axes)
         if cursor is not None and inside.left <= cursor < inside.right:
-            self._draw_cursor(lines, inside, span, (low, high), cursor, unit)
+            self._draw_cursor(lines, axes, cursor, unit)
+        return axes
 
-    def _draw_grid(
-        self, inside: pygame.Rect, span: tuple[float, float], heights: tuple[float, float], unit: str
-    ) -> None:
-        (start, end), (low, high) = span, heights
+    def _draw_grid(self, axes: Axes, unit: str) -> None:
+        inside, (start, end), (low, high) = axes
         step = nice_step(high - low, inside.height / self._px(GRID_Y))
         for value in np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step:
-            y = inside.bottom - 1 - (value - low) / (high - low) * (inside.height - 1)
+            y = axes.y_of(value)
             colour = DECADE if abs(value) < 1e-9 * step else LINE
             pygame.draw.line(self._surface, colour, (inside.left, y), (inside.right - 1, y))
             text = self._font.render(number_text(float(value), step), True, MUTED)
@@ -121,19 +152,16 @@ class Chart:
         self._surface.blit(title, title.get_rect(bottomleft=(self._place.left + self._px(4), self._place.bottom)))
         step = nice_step(end - start, inside.width / self._px(GRID_X))
         for value in np.arange(np.ceil(start / step), np.floor(end / step) + 1) * step:
-            x = inside.left + (value - start) / (end - start) * (inside.width - 1)
+            x = axes.x_of(value)
             pygame.draw.line(self._surface, LINE, (x, inside.top), (x, inside.bottom - 1))
             text = self._font.render(f"{number_text(float(value), step)} s", True, MUTED)
             place = text.get_rect(midtop=(x, inside.bottom + self._px(1)))
             if place.left > inside.left - self._px(20) and place.right < self._place.right:
                 self._surface.blit(text, place)
 
-    def _draw_line(
-        self, line: GraphLine, inside: pygame.Rect, span: tuple[float, float], heights: tuple[float, float]
-    ) -> None:
-        good = np.isfinite(line.values)
-        x = inside.left + (line.seconds - span[0]) / (span[1] - span[0]) * (inside.width - 1)
-        y = inside.bottom - 1 - (line.values - heights[0]) / (heights[1] - heights[0]) * (inside.height - 1)
+    def _draw_line(self, line: GraphLine, axes: Axes) -> None:
+        inside, good = axes.inside, np.isfinite(line.values)
+        x, y = axes.x_of(line.seconds), axes.y_of(line.values)
         y = np.clip(np.where(good, y, 0.0), inside.top - inside.height, inside.bottom + inside.height)
         x, y, good = _thinned(x, y, good, 2 * inside.width)
         joined = good[:-1] & good[1:]
@@ -145,15 +173,15 @@ class Chart:
             colours = np.full(len(ends), packed(line.colour), dtype=np.int64)
             Canvas(self._surface).lines(ends, colours, WIDTH * self._scale)
 
-    def _draw_names(self, lines: Sequence[GraphLine], inside: pygame.Rect, heights: tuple[float, float]) -> None:
+    def _draw_names(self, lines: Sequence[GraphLine], axes: Axes) -> None:
         """Draw the name of each line at the right, at the height of its end, or as near as the others leave it."""
+        inside, _, heights = axes
         tall = self._bold.get_linesize()
         ends = []
         for line in lines:
             good = np.flatnonzero(np.isfinite(line.values))
             value = float(line.values[good[-1]]) if len(good) else heights[0]
-            fraction = min(max((value - heights[0]) / (heights[1] - heights[0]), 0.0), 1.0)
-            ends.append((inside.bottom - 1 - fraction * (inside.height - 1), line))
+            ends.append((axes.y_of(min(max(value, heights[0]), heights[1])), line))
         ends.sort(key=lambda end: end[0])
         tops = _apart([y - tall / 2 for y, _ in ends], tall, self._place.top, inside.bottom)
         x = inside.right + self._px(5)
@@ -174,22 +202,19 @@ class Chart:
             Canvas(self._surface).lines(ends, np.array([packed(line.colour)]), (WIDTH + 0.4) * self._scale)
             start = end + off if off > 0.0 else SAMPLE
 
-    def _draw_cursor(
-        self, lines: Sequence[GraphLine], inside: pygame.Rect, span: tuple[float, float],
-        heights: tuple[float, float], cursor: float, unit: str,
-    ) -> None:  # fmt: skip
+    def _draw_cursor(self, lines: Sequence[GraphLine], axes: Axes, cursor: float, unit: str) -> None:
         """Draw a line at the cursor, a dot on every line there, and the values on a card."""
-        seconds = span[0] + (cursor - inside.left) / (inside.width - 1) * (span[1] - span[0])
+        inside, (seconds, _) = axes.inside, axes.at(cursor, 0.0)
         times = np.concatenate([line.seconds for line in lines])
         at = float(times[np.argmin(np.abs(times - seconds))])
-        x = inside.left + (at - span[0]) / (span[1] - span[0]) * (inside.width - 1)
+        x = axes.x_of(at)
         pygame.draw.line(self._surface, TEXT, (x, inside.top), (x, inside.bottom - 1))
         rows: list[tuple[GraphLine, float]] = []
         for line in lines:
             value = float(line.values[int(np.argmin(np.abs(line.seconds - at)))])
             if np.isfinite(value):
                 rows.append((line, value))
-                y = inside.bottom - 1 - (value - heights[0]) / (heights[1] - heights[0]) * (inside.height - 1)
+                y = axes.y_of(value)
                 if inside.top <= y <= inside.bottom:
                     pygame.draw.aacircle(self._surface, FIELD, (x, y), self._px(4))
                     pygame.draw.aacircle(self._surface, line.colour, (x, y), self._px(3))

@@ -14,7 +14,7 @@ from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadSt
 from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
-from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows, PanelSection
+from sandbox.app.panel.panel_rows import ENTRY_WIDTH, GAP, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows, PanelSection
 from sandbox.app.panel.play_rows import PlayRows
 from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.sweeps.pad_sweeps import PadMaps, PadSweeps
@@ -213,6 +213,8 @@ class Panel(PropertyOwner):
             self._limit_labels[name] = TextBlock(ui, rows.aside(row), "", rows.back, 11.0, WARNING)
         self.form = rows.form(self, [self._coefficients()], self._slider_state)
         self.note = TextBlock(ui, rows.row(28, 2), "", rows.back)
+        self.feel = ui.button(rows.row(ROW, 8, width=(INSIDE - GAP) / 2), "Feel ...", self._feel, rows.back)
+        self.feel.tip = "How a thing comes back once it is let go, and Cs and Cd for the feel that you want"
 
     def _first_material(self) -> int | None:
         """The material that the level's text speaks of, else that of the most springs; None: there is none."""
@@ -442,6 +444,12 @@ class Panel(PropertyOwner):
         world, name = self.playback.session.world, self.firmness.body_of(self.material)
         has_form = name in {body.name for body in world.forms}
         show_take_home(self.ui, world, self.say, name if has_form else None)
+
+    def _feel(self) -> None:
+        """Show how the body feels that the panel is about."""
+        from sandbox.app.panel.feel.feel_page import show_feel
+
+        show_feel(self.ui, self.playback, self.say, self.firmness.body_of(self.material))
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""

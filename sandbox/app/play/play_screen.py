@@ -292,7 +292,7 @@ class PlayScreen:
             "save": files.save_scene,
             "save_recording": files.save_run,
             "press": self._press,
-            **cursor_actions(stage, self.open_menu, self.say),
+            **cursor_actions(lambda: self._ui, stage, self.open_menu, self.say),
             "panel": partial(allowed.if_any, "panel", self._toggle_panel),
             "gallery": self._app.open_gallery,
             "recordings": lambda: self._app.open_gallery("recordings"),

@@ -28,7 +28,8 @@ from sandbox.tools.tool import Loop
 
 WIDTH = 190.0
 NO_MOTOR, MOTOR, TAKE_OUT = "Loose, without its motor", "With a motor: A and D", "Take the axle out"
-COLOUR = "Colour ..."
+COLOUR, FEEL = "Colour ...", "Feel ..."
+NO_FEEL = "It has no springs whose feel could be measured."
 HOLD, LET_GO = "Hold it in the air", "Let it go from the air"
 WEIGHTS = (("Half as heavy", 0.5), ("Twice as heavy", 2.0))
 NO_ROOM = "There is no room for a copy beside it."
@@ -62,6 +63,9 @@ def open_thing_menu(ui: Ui, stage: Stage, pixel: Pixel, say: Say) -> bool:
             colours = [Row(name.capitalize(), swatch=unpacked(tone)) for name, tone in PALETTE.items()]
             open_menu_at(ui, pixel, ui.px(WIDTH), colours, paint, stage.camera.viewport)
             return
+        if entries[index].text == FEEL and particle is not None:
+            _show_feel(ui, stage, particle, say)
+            return
         gesture = playback.session.new_gesture()
         try:
             commands = entries[index].make()
@@ -76,19 +80,25 @@ def open_thing_menu(ui: Ui, stage: Stage, pixel: Pixel, say: Say) -> bool:
     return True
 
 
-def cursor_actions(stage: Stage, open_menu: Callable[[Pixel], None], say: Say) -> dict[str, Callable[[], object]]:
-    """Where keys take the cursor, and the menu of the thing at it, or under the mouse where there is no cursor."""
+def cursor_actions(
+    ui: Callable[[], Ui], stage: Stage, open_menu: Callable[[Pixel], None], say: Say
+) -> dict[str, Callable[[], object]]:
+    """Where keys take the cursor, and menu and feel of the thing at it, or under the mouse where there is no cursor."""
 
-    def open_here() -> None:
+    def with_thing(do: Callable[[int], object]) -> None:
         particle = stage.pointed if stage.cursor is None else stage.at_cursor
         if particle is None:
             say("There is no thing at the cursor. N takes it to the next one.")
         else:
-            x, y = stage.playback.current.position[particle].tolist()
-            open_menu(stage.camera.to_pixels((x, y)))
+            do(particle)
+
+    def open_at(particle: int) -> None:
+        x, y = stage.playback.current.position[particle].tolist()
+        open_menu(stage.camera.to_pixels((x, y)))
 
     return {
-        "thing_menu": open_here,
+        "thing_menu": lambda: with_thing(open_at),
+        "feel": lambda: with_thing(lambda particle: _show_feel(ui(), stage, particle, say)),
         "next_thing": lambda: stage.visit_thing(1),
         "previous_thing": lambda: stage.visit_thing(-1),
         "next_particle": lambda: stage.visit_particle(1),
@@ -107,6 +117,8 @@ def _entries(stage: Stage, particle: int) -> list[_Offer]:
     body = world.particle_names[particle].partition(".")[0]
     if any(body in joined.names and "kit" not in joined.definition for joined in world.joined):
         entries.append(_Offer(COLOUR, "", list))
+    if (world.spring_active & ((world.particle_a == particle) | (world.particle_b == particle))).any():
+        entries.append(_Offer(FEEL, "", list))
     is_fixed = not (state.inverse_mass[state.owner == state.owner[particle]] > 0.0).any()
     return [
         *entries,
@@ -114,6 +126,20 @@ def _entries(stage: Stage, particle: int) -> list[_Offer]:
         _Offer("Copy it", "add", lambda: _copied(stage, particle)),
         _Offer("Delete it, with what hangs on it", "remove", lambda: [Remove(particle=particle)]),
     ]
+
+
+def _show_feel(ui: Ui, stage: Stage, particle: int, say: Say) -> None:
+    """Show how the body of a particle feels."""
+    # What measures, which a window does without until then.
+    from sandbox.app.panel.feel.feel_page import show_feel
+    from sandbox.export.engines import body_at
+
+    stage.playback.apply_pending()
+    body = body_at(stage.playback.session.world, particle)
+    if body is None:
+        say(NO_FEEL)
+    else:
+        show_feel(ui, stage.playback, say, body)
 
 
 def _axle_entries(state: Snapshot, axle: Axle) -> list[_Offer]:

@@ -12,6 +12,7 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT, Colour
 from sandbox.app.film.film import Film, FilmPair
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
+from sandbox.app.widgets.boxes import ProgressBar
 from sandbox.app.widgets.dialogs import MARGIN, Dialog
 from sandbox.app.widgets.slider import RangeSlider
 from sandbox.app.widgets.texts import TextBlock
@@ -294,29 +295,6 @@ class FilmPreview(Widget):
             scaled = pygame.transform.smoothscale(self.picture, (round(wide * part), round(tall * part)))
             surface.blit(scaled, scaled.get_rect(center=surface.get_rect().center))
         pygame.draw.rect(surface, LINE, surface.get_rect(), 1)
-        return surface
-
-
-class ProgressBar(Widget):
-    """A bar filled to a fraction, 0..1."""
-
-    def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
-        super().__init__(ui, rect, container)
-        self.fraction = 0.0
-
-    def show_fraction(self, fraction: float) -> None:
-        """Show how much."""
-        if fraction != self.fraction:
-            self.fraction = fraction
-            self.repaint()
-
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """A bar that fills from the left."""
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        round_by = size[1] // 2
-        pygame.draw.rect(surface, LINE, surface.get_rect(), border_radius=round_by)
-        filled = pygame.Rect(0, 0, max(size[1], round(size[0] * min(self.fraction, 1.0))), size[1])
-        pygame.draw.rect(surface, ACCENT, filled, border_radius=round_by)
         return surface
 
 

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.base.sag_map import NO_SAG, SagMap, own_of, sag_sentence, scale_of, subject_words, word_pairs
 from sandbox.app.draw.picture import particles_of
 from sandbox.app.draw.scene import made_looks, scene_of
@@ -26,6 +25,7 @@ from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import ContactsDef, Level, Settings
 from sandbox.level.format.limits import DEFAULT_MATERIAL, GRAVITY_LIMIT
 from sandbox.level.format.quantities import significant
+from sandbox.level.format.slices import at_once
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.reading.parse import parse_level

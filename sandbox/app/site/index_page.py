@@ -15,10 +15,12 @@ from sandbox.app.draw.picture_cache import SIZE, SUFFIX
 from sandbox.app.gallery.sections import SECTIONS, GallerySection
 from sandbox.export.policy import policy
 from sandbox.level.document.model import Level
+from sandbox.level.format.slices import at_once
 from sandbox.level.format.writing import write_file
 from sandbox.page.bundle import BUNDLE
 from sandbox.page.page import COMPILING, ICON, KERNELS, filled, hint_markup
 from sandbox.physics.snapshot import Snapshot
+from sandbox.session.solution import known_solution
 
 # Folders of a site: pages of levels, their pictures, and the modules with the kernels.
 LEVELS, PICTURES, SCRIPTS = "levels", "pictures", "sandbox"
@@ -149,8 +151,14 @@ def _card(each: SiteLevel, state: Snapshot, words: str, page: IndexPage) -> str:
     return (
         f'<li><a href="{page.opened}/{each.address}.html" data-toy="{each.toy}" data-view="{_numbers(seen)}">'
         f"{_picture(each, 'data-')}"
-        f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p>{leads}</a></li>"
+        f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p>{_solved(each)}{leads}</a></li>"
     )
+
+
+def _solved(each: SiteLevel) -> str:
+    """What the solution beside a level's file says; "" where none is known to win."""
+    known = at_once(known_solution(each.level, each.path))
+    return f"<p class=solved>{html.escape(known[1])}</p>" if known else ""
 
 
 def _picture(each: SiteLevel, before: str = "") -> str:

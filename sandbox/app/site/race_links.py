@@ -2,9 +2,9 @@
 
 from urllib.parse import quote
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.share.runs_for_pages import link_to
 from sandbox.app.site.index_page import LEVELS
+from sandbox.level.format.slices import at_once
 from sandbox.session.judging import Win
 from sandbox.session.replay.link import BEAT
 from sandbox.session.replay.recording import ReplayError

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.base.loop import at_once
 from sandbox.app.draw.colours import THEME_NAMES
 from sandbox.app.draw.picture import run_ahead
 from sandbox.app.draw.picture_cache import (
@@ -33,6 +32,7 @@ from sandbox.app.site.index_page import (
     sections_of,
     write_card_picture,
 )
+from sandbox.level.format.slices import at_once
 from sandbox.level.format.writing import write_file
 from sandbox.level.hints import worded
 from sandbox.page.bundle import BUNDLE

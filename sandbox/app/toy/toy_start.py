@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sandbox.editor.storage.preferences import data_folder
+from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import write_level
 
 if TYPE_CHECKING:
@@ -57,6 +58,8 @@ class ToyStarter:
             file.parent.mkdir(parents=True, exist_ok=True)
             write_level(level, file)
             process = subprocess.Popen([sys.executable, "-m", "sandbox", "toy", str(file)], start_new_session=True)
+        except LevelError as error:
+            return f"The desk toy cannot be started: {error.faults[0]}."
         except OSError as error:
             return f"The desk toy cannot be started: {error.strerror or error}."
         self._last = process, level

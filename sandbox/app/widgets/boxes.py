@@ -204,3 +204,26 @@ class FoldHeading(Pressable):
         words = self.ui.font(HEADING_SIZE, True).render(self.text.upper(), True, colour)
         surface.blit(words, words.get_rect(midleft=(x + k + self.ui.px(6), middle)))
         return surface
+
+
+class ProgressBar(Widget):
+    """A bar filled to a fraction, 0..1."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
+        super().__init__(ui, rect, container)
+        self.fraction = 0.0
+
+    def show_fraction(self, fraction: float) -> None:
+        """Show how much."""
+        if fraction != self.fraction:
+            self.fraction = fraction
+            self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """A bar that fills from the left."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        round_by = size[1] // 2
+        pygame.draw.rect(surface, LINE, surface.get_rect(), border_radius=round_by)
+        filled = pygame.Rect(0, 0, max(size[1], round(size[0] * min(self.fraction, 1.0))), size[1])
+        pygame.draw.rect(surface, ACCENT, filled, border_radius=round_by)
+        return surface

@@ -1,8 +1,10 @@
 """PropertyWidgets: what shows properties and changes them: lines to type into, menus, boxes, labels to drag."""
 
+import os
 import re
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any, Protocol
 
 import pygame
@@ -29,8 +31,11 @@ from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
 from sandbox.level.document.model import ParticleDef
+from sandbox.level.format.level_error import one_line
 from sandbox.level.format.look import COLOUR_PATTERN, colour_of
+from sandbox.level.format.picture import NoPicture, read_picture
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.reading.pictures import pictures_of
 
 # Sizes in layout units.
 ROW = 28.0
@@ -47,7 +52,7 @@ SQUARED = {"m/s^2": "m/s²"}
 # What the button of an object says while some have one, all or none.
 OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
 # What a menu says of null, of a colour that is typed, and of a box that may be neither ticked nor not.
-NONE, OTHER_COLOUR = "automatic", "Another colour..."
+NONE, OTHER_COLOUR, OTHER_PICTURE = "automatic", "Another colour...", "Another file..."
 YES_NO = {"yes": True, "no": False}
 
 
@@ -64,6 +69,11 @@ class PropertyOwner(Protocol):
     def document(self) -> Any:
         """What the properties are of, which their changes get: a document of the editor, a run."""
         ...
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the level's file, None: it has none."""
+        return None
 
     def edit(self, label: str, change: Callable[[Any], Any], merge: str | None = None) -> bool:
         """Make a change; False, and a line for the person, where it cannot be made. merge: it goes on, by that name."""
@@ -215,7 +225,7 @@ class PropertyWidgets:
             self.fields[each.field] = self._entry(each, x, half, 0), self._entry(each, x + half + GAP, half, 1)
         elif about.kind == "flags" or (about.kind == "yes_no" and not about.optional):
             self._add_boxes(each, x, width)
-        elif about.kind in ("choice", "material", "touches", "colour", "thing", "yes_no"):
+        elif about.kind in ("choice", "material", "touches", "colour", "thing", "picture", "yes_no"):
             self._add_choice(each, x, width)
         elif about.kind in ("part", "extras"):
             act = self._press_object if about.kind == "part" else self._ask_for_entry
@@ -282,7 +292,7 @@ class PropertyWidgets:
 
     def _add_choice(self, each: Property, x: float, width: float) -> None:
         about, content = each.about, self._holder
-        few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not (about.optional or about.pick)
+        few = len(about.choices) in range(2, MOST_SIDE_BY_SIDE + 1) and not (about.optional or about.pick)
         width = self._beside_pick(each, x, width)
         if about.tips or (few and sum(map(len, about.choices)) <= SIDE_BY_SIDE):
             labels, tips = about.labels or about.choices, about.tips or (about.tooltip,) * len(about.choices)
@@ -334,6 +344,8 @@ class PropertyWidgets:
             level = self._owner.document.level
             return [*first, *(Row(body.id, _kind_of(body)) for body in level.bodies),
                     *(Row(particle.id, _kind_of(particle)) for particle in level.particles)]  # fmt: skip
+        if about.kind == "picture":
+            return [*first, *(Row(name) for name in sorted(self._pictures())), Row(OTHER_PICTURE)]
         if about.kind != "material":
             if about.kind == "colour":
                 palette = [Row(name, swatch=unpacked(colour_of(name))) for name in about.choices]
@@ -341,6 +353,12 @@ class PropertyWidgets:
             return first + [Row(text) for text in (YES_NO if about.kind == "yes_no" else about.labels or about.choices)]
         colours = material_colours(self._owner.document.level.materials)
         return [*first, *(Row(name, swatch=colour) for name, colour in colours.items())]
+
+    def _pictures(self) -> dict[str, Path]:
+        """Pictures that can be chosen, and their files: those beside the level, and those that things of it wear."""
+        folder = self._owner.folder
+        beside = {} if folder is None else {path.name: path for path in folder.glob("*.png")}
+        return {name: Path(picture.path) for name, picture in pictures_of(self._owner.document.level).items()} | beside
 
     @property
     def _groups(self) -> tuple[str, ...]:
@@ -423,6 +441,8 @@ class PropertyWidgets:
             self._set(name, None)
         elif text == OTHER_COLOUR:
             self._ask_for_colour(name)
+        elif each.about.kind == "picture":
+            self._choose_picture(name, text)
         elif each.about.kind == "yes_no":
             self._set(name, YES_NO[text])
         elif each.about.labels:
@@ -452,6 +472,31 @@ class PropertyWidgets:
             return None
 
         ask(self._ui, each.about.title, HOW_TO_ADD, "", "Add", take)
+
+    def _choose_picture(self, name: str, text: str) -> None:
+        if text == OTHER_PICTURE:
+            self._ask_for_picture(name)
+            return
+        worn = pictures_of(self._owner.document.level)
+        fault = None if text in worn and self._set(name, worn[text]) else self._wear(name, self._pictures()[text])
+        if fault is not None:
+            self._owner.say(fault)
+
+    def _wear(self, name: str, path: Path) -> str | None:
+        """Let the picture of a file be worn; the line that says why not, None = it is."""
+        try:
+            self._set(name, read_picture(path))
+        except NoPicture as error:
+            return f"{one_line(path.name)}: {error}."
+        return None
+
+    def _ask_for_picture(self, name: str) -> None:
+        folder = self._owner.folder or Path()
+        hint = "The path of a PNG. It is copied beside the level when that is saved."
+        ask(
+            self._ui, self.properties[name].about.title, hint, "", "Take it",
+            lambda text: self._wear(name, folder / os.path.expanduser(text)),
+        )  # fmt: skip
 
     def _ask_for_colour(self, name: str) -> None:
         each = self.properties[name]

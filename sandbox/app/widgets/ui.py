@@ -33,7 +33,7 @@ class Sheet:
     """A modal page; close: what Escape does; is_page: it is read, so no notices lie over it.
 
     reopen: opens it in another layout; None = it ends with this one. is_question: it outlives the screen under it.
-    is_menu: a press beside what it holds closes it.
+    is_menu: a press beside what it holds closes it. work: called once a frame, until it says that it is done.
     """
 
     panel: Plate
@@ -42,6 +42,7 @@ class Sheet:
     reopen: Reopen | None
     is_question: bool
     is_menu: bool
+    work: Callable[[], bool] | None = None
 
 
 class Ui(WindowLayout):
@@ -160,6 +161,16 @@ class Ui(WindowLayout):
         panel = Plate(self, pygame.Rect((0, 0), self.size), None, style)
         self._sheets.append(Sheet(panel, close or panel.remove, is_page, reopen, is_question, is_menu))
         return panel
+
+    def work_on(self, panel: Plate, work: Callable[[], bool]) -> None:
+        """Call `work` once a frame while a modal page is open, until it gives True: all is done."""
+        for sheet in self._sheets:
+            sheet.work = work if sheet.panel is panel else sheet.work
+
+    @property
+    def moves(self) -> bool:
+        """Whether work of a modal page goes on."""
+        return any(sheet.work is not None for sheet in self._sheets)
 
     def forget(self, widget: Widget) -> None:
         """Forget a widget that is removed, and the modal page that it was."""
@@ -416,6 +427,9 @@ class Ui(WindowLayout):
 
     def update(self, frame_time: float) -> None:
         """Update the widgets by frame_time [s]."""
+        for sheet in list(self._sheets):
+            if sheet.work is not None and sheet.work():
+                sheet.work = None
         self._show_focus()
         at = self._scaled(pygame.mouse.get_pos())
         if at != self.pointer or not self.is_laid:

@@ -385,7 +385,16 @@ class App:
     @property
     def moves(self) -> bool:
         """Whether something in the window changes by itself, or works in its frames at what it will show."""
-        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing, self.link_copying, self.best)
+        parts = (
+            self.screen,
+            self.gallery,
+            self.status,
+            self.guide,
+            self.sharing,
+            self.link_copying,
+            self.best,
+            self.ui,
+        )
         return any(part is not None and part.moves for part in parts)
 
     @property

@@ -6,21 +6,26 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.application import Application, Editing
 from sandbox.app.widgets.dialogs import choose, show_lines
 from sandbox.bring.bring import Brought, bring, usual_kind
 from sandbox.bring.making import with_floor
 from sandbox.bring.sketch import Kind
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import put_in
+from sandbox.editor.edits.fields import change_field
+from sandbox.editor.items import chosen_bodies
 from sandbox.level.document.model import ContactsDef
 from sandbox.level.format.level_error import LevelError, one_line
+from sandbox.level.format.look import BodyLook
+from sandbox.level.format.picture import NoPicture, read_picture
 from sandbox.level.format.quantities import replaced
 from sandbox.session.transaction import Interrupted
 
 # How long the bar waits for the work before it is drawn again [s].
 WAIT = 0.02
 _LABELS: dict[Kind, str] = {"jelly": "As jelly", "ground": "As ground"}
+AS_PICTURE = "As the picture of what is selected"
 AS_THEY_MOVE = "What moves as jelly, the rest as ground"
 _TEXT = "Its outlines become soft bodies, or ground that never moves."
 _OWN = f"{_TEXT} They are a level of their own."
@@ -63,9 +68,33 @@ def offer_to_bring(app: Application, path: Path) -> None:
     choices: list[tuple[str, Callable[[], object]]] = [
         (_LABELS[kind], partial(_bring, app, path, kind)) for kind in kinds
     ]
+    editor = None if _is_own(app) else app.documents.editor
+    if (
+        editor is not None
+        and path.suffix.lower() == ".png"
+        and chosen_bodies(editor.document.level, editor.document.selection)
+    ):
+        choices.append((AS_PICTURE, partial(_wear, app, editor, path)))
     if usual is None:
         choices.insert(0, (AS_THEY_MOVE, partial(_bring, app, path, None)))
     choose(app.ui, f"Bring in {one_line(path.name)}", _OWN if _is_own(app) else _TEXT, choices)
+
+
+def _wear(app: Application, editor: Editing, path: Path) -> None:
+    """Let the selected bodies wear a picture."""
+    try:
+        picture = read_picture(path)
+    except NoPicture as error:
+        app.say(f"{one_line(path.name)}: {error}.")
+        return
+
+    def worn(document: Document) -> Document:
+        bodies = frozenset(item for item in document.selection if item.kind == "body")
+        return change_field(
+            document, bodies, "look", lambda look: {**(look or BodyLook()).__dict__, "picture": picture}
+        )
+
+    editor.edit("Picture", worn)
 
 
 def _brought(app: Application, path: Path, kind: Kind | None) -> Brought | None:

@@ -28,6 +28,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
 from sandbox.level.reading.files import load_level, read_bytes, read_level, shipped_folder, shipped_levels
+from sandbox.level.reading.pictures import lacking
 from sandbox.session.commands import CommandError
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
@@ -122,7 +123,9 @@ class FileActions:
             self._refuse(path, error.faults)
             return False
         self.app.start(playback)
-        self.app.say(f"Watching {one_line(Path(path).name)}. Touch anything to take over.")
+        lacks = lacking(replay.level)
+        words = f"{lacks}." if lacks else "Touch anything to take over."
+        self.app.say(f"Watching {one_line(Path(path).name)}. {words}")
         return True
 
     def open_scene(self, path: Path) -> bool:
@@ -139,7 +142,8 @@ class FileActions:
         play = self.app.play
         if play is not None and path.parent != self.app.scenes.shelf.folder:
             play.saved = path, scene
-        self.app.say(f"As it stood {when_text(about.when)}. Space lets it go on.")
+        lacks = lacking(scene.level)
+        self.app.say(f"As it stood {when_text(about.when)}. {f'{lacks}.' if lacks else 'Space lets it go on.'}")
         return True
 
     def ask_to_open(self) -> None:

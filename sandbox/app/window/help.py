@@ -18,7 +18,7 @@ from sandbox.app.widgets.widget import Widget, WindowLayout
 COLUMN_WIDTH = 500.0
 NARROWEST_COLUMN = 400.0
 MOST_COLUMNS = 3
-ROW = 17.0
+ROW = 16.5
 HEADING = 27.0
 TOP = 56.0
 TEXT_SIZE = 12.0

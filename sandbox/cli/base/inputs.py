@@ -75,5 +75,11 @@ def is_replay(name: str) -> bool:
 
 def level_or_replay(name: str, retold: bool = False) -> "tuple[Level, Replay | None]":
     """What a file holds: a level, or a replay and the level that it is of; retold: as for that. Raises Refused."""
+    import sys
+
+    from sandbox.level.reading.pictures import lacking
+
     replay = recording_of(name, retold=retold) if is_replay(name) else None
+    if replay and (line := lacking(replay.level)):
+        print(line, file=sys.stderr)
     return (replay.level if replay else level_of(name)), replay

@@ -34,6 +34,7 @@ from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.reading.parse import parse_level
+from sandbox.level.reading.pictures import pictures_of, take_pictures
 
 
 def copy_text(document: Document) -> str:
@@ -53,6 +54,7 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
         raise EditError(error.faults[0]) from None
     if not (found.bodies or found.particles or found.terrain or found.zones):
         raise EditError("the copied level is empty")
+    take_pictures(found, pictures_of(document.level))
     return put_in(document, found, at)
 
 

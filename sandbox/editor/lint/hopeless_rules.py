@@ -18,6 +18,7 @@ from sandbox.level.plan.rules import rule_keys
 from sandbox.level.plan.run_rules import run_rules
 from sandbox.level.rules.player_limits import DEEDS
 from sandbox.level.rules.rule import QuestionDef, RuleDef
+from sandbox.session.outcome import vain_goal
 
 # Directions in which it is looked how long a body is.
 DIRECTIONS = 36
@@ -92,9 +93,8 @@ def open_goals(level: Level) -> Rule:
 
 def vain_goals(level: Level) -> Rule:
     """A goal that is told and no rule wins, and one for which nobody can do anything."""
-    if level.goal and not level.has_goal:
-        text = f'No rule wins the level, and its goal says: "{level.goal}". Add one on the page Rules'
-        yield Finding("warning", text, frozenset(), None)
+    if vain := vain_goal(level):
+        yield Finding("warning", f"{vain}. Add one on the page Rules", frozenset(), None)
     hands = level.hands
     if level.has_goal and hands is not None and not (driving_keys(level) or rule_keys(level)):
         may = set(hands.may or ()) if hands.may is not None else set(DEEDS)

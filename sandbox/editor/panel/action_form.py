@@ -166,9 +166,10 @@ def _softened(document: Document, index: int, number: int, first: str | None) ->
 
 
 def _add_action(document: Document, index: int) -> Document:
-    def change(_: Level, then: list[RuleData]) -> list[RuleData]:
-        has_sound = any("sound" in each for each in then)
-        return [*then, {"say": SAID} if has_sound else {"sound": "bell"}]
+    def change(level: Level, then: list[RuleData]) -> list[RuleData]:
+        # What is not done yet, of what needs nothing else.
+        free = (does for does in ("sound", "say", "checkpoint") if not any(does in each for each in then))
+        return [*then, _first_action(level, next(free, "say"))]
 
     return _acting(index, document, change)
 

@@ -34,6 +34,7 @@ Kind = Literal[
     "touches",
     "extras",
     "thing",
+    "picture",
 ]
 
 # What can be picked on the sheet in place of typing it: a mover is a body or a loose particle, a thing terrain too.
@@ -45,11 +46,11 @@ _RADIANS, DEGREES = "rad", "°"
 # Fields that are shown as nothing else is.
 _OWN_KINDS: dict[str, Kind] = {
     "material": "material", "shape": "form", "holes": "outlines", "extras": "extras", "skin": "choice",
-    "follow": "thing", "always": "list", "eventually": "list",
+    "follow": "thing", "picture": "picture", "always": "list", "eventually": "list",
     "line": "choice", "ball": "choice", "colour": "colour", "panel": "colour",
 }  # fmt: skip
 # What is chosen from a menu, which has no room to be empty and no need for words on names in a file.
-_MENUS = ("choice", "colour", "material", "touches", "thing", "yes_no")
+_MENUS = ("choice", "colour", "material", "touches", "thing", "picture", "yes_no")
 _OF_FILES = re.compile(r": a name of an? \w+\.")
 # Names to choose from that the format takes as text, since one that it does not know counts as automatic.
 _NAMES = {"skin": SKINS, "line": LINES, "ball": BALLS, "colour": tuple(PALETTE), "panel": tuple(PALETTE)}

@@ -1,5 +1,6 @@
 """Autosave: the level as it is being edited, kept in the person's data folder by a thread of its own."""
 
+import base64
 import contextlib
 import datetime
 import hashlib
@@ -20,8 +21,10 @@ from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.preferences import data_folder
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
+from sandbox.level.format.picture import Picture
 from sandbox.level.format.writing import refusal_of, write_file
 from sandbox.level.reading.parse import parse_level
+from sandbox.level.reading.pictures import pictures_of, take_pictures
 from sandbox.level.reading.salvage import salvage
 
 _FORMAT = "spring-sandbox/autosave"
@@ -121,13 +124,25 @@ class Orphan:
     def level(self) -> Level:
         """The level that was kept. Raises StorageError with one line where it is damaged; see `salvaged`."""
         try:
-            return parse_level(_halves(self.path)[1], os.fspath(self.path))
+            level = parse_level(_halves(self.path)[1], os.fspath(self.path))
+            self._take_pictures(level)
+            return level
         except LevelError as error:
             raise StorageError(error.faults[0]) from None
 
     def salvaged(self) -> tuple[Level | None, list[str]]:
         """The valid part of a damaged autosave, and the lines of what is left out. Raises StorageError."""
-        return salvage(_halves(self.path)[1], os.fspath(self.path))
+        level, lines = salvage(_halves(self.path)[1], os.fspath(self.path))
+        if level is not None:
+            self._take_pictures(level)
+        return level, lines
+
+    def _take_pictures(self, level: Level) -> None:
+        """Give a level the pictures that were kept with it."""
+        # Autosaves of earlier versions, and damaged ones, have none.
+        with contextlib.suppress(AttributeError, TypeError, ValueError):
+            kept = json.loads(_halves(self.path)[0]).get("pictures", {})
+            take_pictures(level, {name: Picture(name, base64.b64decode(text)) for name, text in kept.items()})
 
     def dismiss(self) -> None:
         """Remove it for good: the person has it back, or does not want it."""
@@ -199,6 +214,9 @@ def _data(edit: _Edit, hurried: Callable[[], bool]) -> bytes:
         "label": edit.label,
         "when": datetime.datetime.now(datetime.UTC).isoformat(),
         "digest": _digest(rest),
+        "pictures": {
+            name: base64.b64encode(picture.data or b"").decode() for name, picture in pictures_of(edit.level).items()
+        },
     }
     return json.dumps(head).encode() + b"\n" + rest
 

@@ -18,7 +18,8 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced
 from sandbox.level.format.writing import refusal_of, write_file
-from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, write_level
+from sandbox.level.reading.files import parse_level, read_bytes, read_level, shipped_folder, write_level
+from sandbox.level.reading.pictures import read_pictures
 from sandbox.level.reading.salvage import salvage
 
 # Own parts that are listed at most.
@@ -88,7 +89,7 @@ class LevelFile:
     def copy_of(cls, path: str | os.PathLike[str], folder: Path | None = None) -> tuple["LevelFile", Level]:
         """Open a level as a copy that has no file yet. Raises LevelError where it cannot be read."""
         source = os.fspath(path)
-        return cls(folder), parse_level(read_bytes(source), source)
+        return cls(folder), read_level(source)
 
     @classmethod
     def salvaged(
@@ -99,7 +100,10 @@ class LevelFile:
         Raises LevelError where the file itself cannot be read.
         """
         source = os.fspath(path)
-        return cls(folder), *salvage(read_bytes(source), source)
+        level, lines = salvage(read_bytes(source), source)
+        if level is not None:
+            read_pictures(level, Path(source).parent, source, has_all=False)
+        return cls(folder), level, lines
 
     def read(self) -> Level:
         """Read the level from its file, also again to revert to it. Raises LevelError."""
@@ -108,6 +112,7 @@ class LevelFile:
         stamp = _stamp(self.path)
         data = read_bytes(source)
         level = parse_level(data, source)
+        read_pictures(level, Path(source).parent, source)
         self._digest, self._stamp = _digest(data), stamp
         return level
 
@@ -352,6 +357,7 @@ def _read(path: Path, stamp: tuple[int, int]) -> tuple[Level | None, str]:
     """The level of a file as it is since its stamp, or its first fault."""
     try:
         level = parse_level(read_bytes(path), os.fspath(path.name))
+        read_pictures(level, path.parent, os.fspath(path.name))
     except LevelError as error:
         return None, one_line(error.faults[0])
     if not (level.bodies or level.particles or level.terrain):

@@ -1,17 +1,17 @@
-"""The tools of terrain: solid ground, lines, and walls."""
+"""The tools of terrain: solid ground, lines, walls, and water."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.edits.terrain import add_terrain, set_walls, with_corners
+from sandbox.editor.edits.terrain import add_terrain, add_zone, set_walls, with_corners
 from sandbox.editor.tools.drawing_bodies import direction, rounded
-from sandbox.editor.tools.drawing_options import Options, number_option
+from sandbox.editor.tools.drawing_options import AnyOptions, Options, number_option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.document.model import TerrainDef, WallsDef
-from sandbox.level.format.limits import BELT_LIMIT, FRICTION_LIMIT
+from sandbox.level.document.model import TerrainDef, WallsDef, WaterDef, ZoneDef
+from sandbox.level.format.limits import BELT_LIMIT, FRICTION_LIMIT, WATER_DENSITY_LIMIT
 from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.geometry import simplified
 
@@ -85,31 +85,64 @@ class TerrainLineDrawing(GroundDrawing):
         return self.close()
 
 
-class WallsDrawing(Drawing[SurfaceOptions]):
-    """Four walls around a box, in place of those that the level has; corners go to the grid at any angle."""
+class UprightDrawing(Drawing[AnyOptions]):
+    """An upright box, which joins nothing; corners go to the grid at any angle."""
 
     anchor = None
-    defaults = SurfaceOptions()
-    start_hint = "Drag from corner to corner of the room, or click both; the page Level removes walls"
     end_hint = "Click or release at the opposite corner"
+    noun: ClassVar[str] = ""
 
     def joins(self, index: int) -> bool:
-        """False: walls join nothing."""
+        """False: such a box joins nothing."""
         return False
 
-    def placed(self, document: Document, points: list[Snap]) -> Document:
-        """The document with the walls. Raises EditError."""
+    def box(self, points: list[Snap]) -> tuple[float, float, float, float]:
+        """Left, bottom, right, top [m]. Raises EditError for a box without a size."""
         (ax, ay), (bx, by) = (_corner(point) for point in points)
         if ax == bx or ay == by:
-            raise EditError("drag across, to give the room a width and a height")
-        box = (min(ax, bx), min(ay, by), max(ax, bx), max(ay, by))
-        friction, restitution = self.options.friction, self.options.restitution
-        return set_walls(document, WallsDef(box=box, friction=friction, restitution=restitution))
+            raise EditError(f"drag across, to give the {self.noun} a width and a height")
+        return min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)
 
     def sizes(self, points: list[Snap]) -> str:
         """Width and height."""
         (ax, ay), (bx, by) = points[0].point, points[1].point
         return f"{abs(bx - ax):.3g} m x {abs(by - ay):.3g} m"
+
+
+class WallsDrawing(UprightDrawing[SurfaceOptions]):
+    """Four walls around a box, in place of those that the level has."""
+
+    defaults = SurfaceOptions()
+    start_hint = "Drag from corner to corner of the room, or click both; the page Level removes walls"
+    noun = "room"
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        """The document with the walls. Raises EditError."""
+        friction, restitution = self.options.friction, self.options.restitution
+        return set_walls(document, WallsDef(box=self.box(points), friction=friction, restitution=restitution))
+
+
+@dataclass(frozen=True)
+class WaterOptions(Options):
+    """Options of water: its density."""
+
+    density: float = number_option(
+        WaterDef().density, "density", "Mass of a square metre of the water. What has less floats; a Density among the "
+        "properties of a body says what it has.", "kg/m²", 1e-3, WATER_DENSITY_LIMIT,
+    )  # fmt: skip
+
+
+class WaterDrawing(UprightDrawing[WaterOptions]):
+    """A zone of water: its upper side is the surface."""
+
+    defaults = WaterOptions()
+    start_hint = "Drag from corner to corner of the water, or click both; its upper side is the surface"
+    noun = "water"
+
+    def placed(self, document: Document, points: list[Snap]) -> Document:
+        """The document with the water. Raises EditError."""
+        water = WaterDef(density=self.options.density)
+        return add_zone(document, ZoneDef(id="water", box=self.box(points), water=water))
 
 
 def _corner(point: Snap) -> Point:
@@ -120,3 +153,4 @@ def _corner(point: Snap) -> Point:
 GROUND = EditorTool("ground", "D", "Solid ground", GroundDrawing, "Terrain")
 LINE = EditorTool("line", "C", "A line with two sides", TerrainLineDrawing, "Terrain")
 WALLS = EditorTool("walls", "Shift+D", "Walls around the level", WallsDrawing, "Terrain")
+WATER = EditorTool("water", "Shift+C", "Water: it lifts what is lighter", WaterDrawing, "Terrain")

@@ -6,7 +6,7 @@ from sandbox.editor.tools.drawing_chassis import CHASSIS
 from sandbox.editor.tools.drawing_hangers import HANGERS
 from sandbox.editor.tools.drawing_part import PART
 from sandbox.editor.tools.drawing_particles import PARTICLE, PIN, SPRING
-from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
+from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS, WATER
 from sandbox.editor.tools.drawing_tool import EditorTool
 from sandbox.editor.tools.drawing_wave import WAVE
 from sandbox.editor.tools.drawing_zone import ZONE
@@ -20,6 +20,6 @@ TOOL_GROUPS = {
     "Points": (PARTICLE, SPRING, PIN),
     "Bodies": BODY_TOOLS,
     "Machines": (PART, CHASSIS, AXLE, HANGERS, WAVE),
-    "Ground": (GROUND, LINE, WALLS, ZONE),
+    "Ground": (GROUND, LINE, WALLS, WATER, ZONE),
 }
 TOOLS = {tool.name: tool for tools in TOOL_GROUPS.values() for tool in tools}

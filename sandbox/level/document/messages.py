@@ -9,6 +9,7 @@ from pydantic import BaseModel, Tag
 from sandbox.level.document.model import Level, keys_of
 from sandbox.level.format.level_error import Fault, json_path, shown, suggestion
 from sandbox.level.format.look import COLOUR_PATTERN, PALETTE
+from sandbox.level.format.picture import NAME_PATTERN, NAMED
 from sandbox.level.format.quantities import ARROW_KEYS, ID_PATTERN, KEY_PATTERN
 from sandbox.level.kinds.bodies import KINDS
 
@@ -130,6 +131,8 @@ def _pattern(value: Any, context: dict[str, Any]) -> str:
         return f"{shown(value)} is no key; use a small letter, a digit, or one of {', '.join(ARROW_KEYS)}"
     if context["pattern"] == COLOUR_PATTERN:
         return f'{shown(value)} is no colour; use one of {", ".join(PALETTE)}, or "#RRGGBB"'
+    if context["pattern"] == NAME_PATTERN:
+        return f"{shown(value)} cannot be used here: {NAMED}"
     return f"{shown(value)} holds control characters; take them out"
 
 

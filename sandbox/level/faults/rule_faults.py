@@ -107,7 +107,9 @@ def _question_faults(path: str, question: QuestionDef, names: _RuleNames) -> Ite
     asks = question.asked[0]
     for field in (*_SUBJECTS, *MANY, *_BOUNDS):
         if getattr(question, field) is not None and field not in _TAKES[asks]:
-            yield f"{path}.{field}", f"belongs to another question than {asks}; take it out"
+            is_several = asks == "breaks" and field in MANY
+            remedy = "ask the metric broken_springs of several, at_least 1" if is_several else "take it out"
+            yield f"{path}.{field}", f"belongs to another question than {asks}; {remedy}"
     field, named = several(question)
     if field and field in _TAKES[asks]:
         yield from _faults_of_several(path, field, named, question, names)

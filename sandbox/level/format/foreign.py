@@ -17,6 +17,7 @@ SCENE_FORMAT = "spring-sandbox/scene"
 SCENE = "a scene, a run as it stood"
 SVG, PNG, RUBE = "an SVG drawing", "a PNG picture", "an R.U.B.E. scene (JSON)"
 TILED, TILED_XML = "a Tiled map (JSON)", "a Tiled map (XML)"
+TILE_SET = "a Tiled tile set, and no map"
 # What `sandbox bring` makes levels of.
 BROUGHT = (SVG, PNG, TILED, TILED_XML, RUBE)
 _STARTS = (
@@ -27,7 +28,7 @@ _STARTS = (
     (b"\xff\xd8\xff", "a JPEG picture"),
     (b"%PDF", "a PDF document"),
 )
-_ROOTS = {"map": TILED_XML, "tileset": "a Tiled tile set (XML)", "svg": SVG}
+_ROOTS = {"map": TILED_XML, "tileset": TILE_SET, "svg": SVG}
 _ROOT = re.compile(rb"<(?:[A-Za-z_][\w.-]*:)?([A-Za-z_][\w.-]*)[\s/>]")
 _MAYBE_XML = re.compile(rb"<(?:[?!]|[A-Za-z_])")
 # Where the first element of an XML file is looked for: after its declaration and comments.
@@ -67,6 +68,8 @@ def foreign_keys(raw: dict[str, Any]) -> str | None:
         return "a JSON Schema"
     if raw.get("type") == "map" or {"layers", "tilewidth"} <= raw.keys():
         return TILED
+    if raw.get("type") == "tileset" or {"tilewidth", "imagewidth"} <= raw.keys():
+        return TILE_SET
     if {"body", "gravity"} <= raw.keys() and isinstance(raw["body"], list):
         return RUBE
     if raw.get("type") in ("composite", "engine") or {"world", "timing"} <= raw.keys():

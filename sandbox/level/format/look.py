@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from sandbox.level.format.limits import BODY_RADIUS
+from sandbox.level.format.picture import PICTURE_LIMIT, SIDE_LIMIT, PictureName
 from sandbox.level.format.quantities import Description, Id, Index, Line, Name, empty
 
 # Names of skins, lines, balls and grounds. A name that is not listed counts as automatic.
@@ -71,6 +72,13 @@ class BodyLook(Description):
 
     skin: SkinName | None = Field(
         default=None, description="What it is filled with: a name of a skin.", json_schema_extra=empty("automatic")
+    )
+    picture: PictureName | None = Field(
+        default=None,
+        description="Name of a PNG beside the level's file, which a jelly, a mesh of triangles, a ring or a wheel "
+        "wears: stretched over its form, cut to its outline. Where the picture is transparent, the colour shows. At "
+        f"most {PICTURE_LIMIT // 1024 // 1024} MiB and {SIDE_LIMIT:,} pixels a side.",
+        json_schema_extra=empty("none"),
     )
     line: LineName | None = Field(
         default=None,

@@ -11,8 +11,9 @@ from sandbox.level.faults.validate import check_level
 from sandbox.level.format.level_error import LevelError, suggestion
 from sandbox.level.format.limits import FILE_LIMIT
 from sandbox.level.format.shipped import shipped_folder
-from sandbox.level.format.writing import refusal_of, write_over
+from sandbox.level.format.writing import refusal_of, write_file, write_over
 from sandbox.level.reading.parse import parse_level
+from sandbox.level.reading.pictures import placed_pictures, read_pictures
 
 __all__ = [
     "LevelError",
@@ -35,6 +36,7 @@ def read_level(path: str | os.PathLike[str]) -> Level:
     """Read a level file. Raises LevelError with one line per fault, also if the file cannot be read."""
     source = os.fspath(path)
     level = parse_level(read_bytes(source), source)
+    read_pictures(level, Path(source).parent, source)
     keep_file(level, Path(source).name)
     return level
 
@@ -96,15 +98,21 @@ def level_path(name: str | os.PathLike[str]) -> str | Path:
 def write_level(level: Level, path: str | os.PathLike[str], backups: Path | None = None) -> str | None:
     """Write a level in canonical form, whole or not at all. Raises LevelError if it could not be read back.
 
+    Its pictures are written beside it, where they are not there; another picture of the same name stays, and the file
+    then names the level's own by a number.
+
     If the folder does not allow to replace a file in one step, a copy of the old file is made first, beside it or in
     the folder `backups`. Returns a warning that says so, else None.
     """
     source = os.fspath(path)
     check_level(level, source)
-    data = level_text(level).encode()
+    named, pictures = placed_pictures(level, Path(source).parent, source)
+    data = level_text(named).encode()
     if len(data) > FILE_LIMIT:
         raise LevelError(source, [("", f"would be larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
     try:
+        for picture, content in pictures.items():
+            write_file(picture, content)
         return write_over(Path(os.path.realpath(source)), data, backups)
     except (OSError, ValueError) as error:
         raise LevelError(source, [("", f"cannot be written: {refusal_of(error)}")]) from None

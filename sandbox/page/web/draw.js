@@ -7,6 +7,7 @@ import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 import { drawTread } from './treads.js';
 import { Water } from './water.js';
+import { drawWorn, Forms, unpacked, upright } from './worn.js';
 /** @import { StateArrays } from './tables.js' */
 /**
  * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
@@ -34,6 +35,8 @@ export class Picture {
   #scene;
   #world;
   #water;
+  #worn;
+  #forms = new Forms();
   /** @type {Things | null} */
   #things = null;
   /** @type {Uint8Array[]} */
@@ -56,14 +59,17 @@ export class Picture {
   /** @type {Float64Array} */
   strain = new Float64Array();
 
-  /** @param {HTMLCanvasElement} canvas @param {Scene} scene @param {World} world */
-  constructor(canvas, scene, world) {
+  /** changed: called when there is more to see of the same world.
+   * @param {HTMLCanvasElement} canvas @param {Scene} scene @param {World} world @param {() => void} [changed] */
+  constructor(canvas, scene, world, changed = () => {}) {
     this.#canvas = canvas;
     this.#context = contextOf(canvas);
     this.theme = scene.themes.dark;
     this.#whole = scene;
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
+    this.#worn = unpacked(scene.worn, changed);
+    this.#forms.note(this.#scene.bodies, world.view('state.origin'));
     this.#world = world;
     this.#water = new Water(scene, world);
   }
@@ -89,6 +95,7 @@ export class Picture {
     if (!things || there.some((array, n) => array.length !== this.#there[n].length || array.some((value, k) => value !== this.#there[n][k]))) {
       this.#there = there.map((array) => array.slice());
       this.#scene = unfolded(this.#whole, this.#world);
+      this.#forms.note(this.#scene.bodies, this.#state('origin'));
       things = this.#things = thingsOf(this.#scene, this.#world, this.#there[0], this.#there[1]);
     }
     things.shapes.forEach((shape) => this.#trace(shape));
@@ -118,7 +125,7 @@ export class Picture {
   draw(camera, theme, previous, part, seconds, behind = () => {}) {
     const [things, size] = this.#laid(camera, theme, previous, part, seconds), { shapes } = things;
     const context = this.#context, { ratio, scale } = this;
-    shapes.forEach((shape) => makeSkin(shape, camera.width, camera.height));
+    shapes.filter((shape) => shape.layer < 2).forEach((shape) => makeSkin(shape, camera.width, camera.height));
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.#backdropNow(size), 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -131,6 +138,10 @@ export class Picture {
     shapes.filter((shape) => shape.layer === 0).forEach((shape) => this.#drawShape(shape));
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
+    things.worn.forEach((worn) => {
+      if (!worn.texels.length) worn.texels = this.#forms.places(worn, this.#state('origin'));
+      drawWorn(context, worn, this.#worn.get(worn.body.picture ?? ''), this.at, camera.zoom);
+    });
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
     things.balloons.forEach((body) => this.#drawGleams(body));
     things.faces.forEach((face, k) => this.#drawFace(face, k));
@@ -417,13 +428,10 @@ export class Picture {
 
   /** Where the corners of triangles of a body lie in its picture, so many texels to a cell.
    * @type {(body: FilledBody, triangles: number[][], texels: number) => number[][]} */
-  #texels({ angle, spacing, slots }, triangles, texels) {
-    const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
-    /** @type {(slot: number) => number[]} */
-    const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
-      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine].map((value) => (value * texels) / spacing);
-    const [left, , , low] = boxOf(slots.flatMap(turned));
-    return triangles.map((corners) => corners.flatMap(turned).map((value, k) => value - (k % 2 ? low : left)));
+  #texels(body, triangles, texels) {
+    const turned = upright(body, this.#state('origin')), by = texels / body.spacing;
+    const [left, , , low] = boxOf(body.slots.flatMap(turned));
+    return triangles.map((corners) => corners.flatMap(turned).map((value, k) => by * (value - (k % 2 ? low : left))));
   }
 
   /** How large a wheel is.

@@ -18,7 +18,7 @@ const PARTS = {
     springs: 'count', segments: 'count or null', shapes: [SHAPE], needs: ['spring'], 'triangles?': ['particle'],
     'keeps_area?': 'flag', 'spacing?': 'number', 'spot?': ['number', 'number', 'number'], 'face?': 'flag',
     'knots?': ['particle'], 'wheel?': { hub: 'particle', radius: 'number', is_tyre: 'flag', inner: ['particle'],
-      outer: ['particle'], spokes: ['particle'] } }],
+      outer: ['particle'], spokes: ['particle'] }, 'picture?': 'file', 'is_fan?': 'flag' }],
   joins: [{ ...LOOK, spring: 'spring' }],
   balls: [{ slot: 'particle', kind: 'name', colour: 'colour or null' }],
 };
@@ -29,6 +29,7 @@ const SLOTS = ['particle', 'spring', 'first'];
 /** @type {Record<string, (value: any, rows: Rows) => boolean>} */
 const CHECKS = {
   name: (value) => typeof value === 'string' && NAME.test(value) && !(value in {}),
+  file: (value) => typeof value === 'string' && value.length <= 256,
   colour: (value) => typeof value === 'string' && COLOUR.test(value),
   'colour or null': (value, rows) => value === null || CHECKS.colour(value, rows),
   number: (value) => typeof value === 'number' && Math.abs(value) <= FAR,

@@ -57,7 +57,7 @@ export function canvasOf(width, height, settings) {
 
 /** A picture as what fills all around it.
  * @type {(context: CanvasRenderingContext2D) => CanvasPattern} */
-function tiled(context) {
+export function tiled(context) {
   const pattern = context.createPattern(context.canvas, 'repeat');
   if (!pattern) throw new Error('a picture has no size');
   return pattern;
@@ -583,11 +583,14 @@ function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
   context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
 }
 
-/** @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
-function fillTriangle(context, points, texels) {
+/** Fill a triangle of the picture that the context fills with.
+ * @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
+export function fillTriangle(context, points, texels) {
   lay(context, points, texels);
   const [u0, v0, u1, v1, u2, v2] = texels, u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
+  // A little larger, so that no seam shows; tips of what is narrow stay near.
+  const [left, top, right, bottom] = boxOf(points), by = Math.min(0.1, 5 / Math.hypot(right - left, bottom - top));
   context.beginPath();
-  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
+  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + by * (cu - u), cv + by * (cv - v));
   context.fill();
 }

@@ -48,7 +48,7 @@ const unfollowed = () => ({ half: 0, pieces: [], path: new Path2D() });
 export function thingsOf(scene, world, active, present) {
   const now = { scene, world, active, whole: wholeTriangles(world) };
   /** @type {Things} */
-  const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
+  const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], worn: [], faces: [], balloons: [] };
   const split = splitSprings(world, active);
   for (const body of scene.bodies) {
     if (body.slots.some((slot) => present[slot])) addBody(things, split.length ? withSplit(body, split, world) : body, now);
@@ -83,8 +83,13 @@ function addBody(things, body, now) {
   const springs = body.springs.filter(([spring]) => active[spring]);
   if ('sides' in body) addFilled(things, body, springs, now);
   else if (body.shapes.length && body.needs.every((spring) => active[spring])) {
-    for (const shape of body.shapes) things.shapes.push({ ...shape, springs, cell: body.cell, ...untraced() });
-    if (body.skin === 'balloon') things.balloons.push({ ...body, knots: body.knots ?? [] });
+    const shapes = body.shapes.map((shape) => ({ ...shape, springs, cell: body.cell, ...untraced() }));
+    things.shapes.push(...shapes);
+    if (body.is_fan) {
+      const [shape] = shapes, { loops: [loop] } = shape, triangles = loop.map((slot, k) => [-1, slot, loop[(k + 1) % loop.length]]);
+      things.worn.push({ body, shape, triangles, loops: [loop], texels: [] });
+    }
+    if (body.skin === 'balloon' && !body.is_fan) things.balloons.push({ ...body, knots: body.knots ?? [] });
     if (body.wheel) things.wheels.push(body.wheel);
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
 }
@@ -126,9 +131,10 @@ function addFilled(things, body, springs, { scene, world, active, whole }) {
   for (const piece of found.length ? withFaces(body, found, world.view('state.origin'), scene.pieces) : []) {
     const { left, loops, face } = piece, flat = piece.isCrumb && { look: flatOf(shape, scene), shows_strain: false };
     piece.inside.forEach(([spring]) => inside.add(spring));
-    if (!isCloth) {
-      things.shapes.push({ ...shape, ...flat, loops, springs: piece.inside, cell: body.cell, ...untraced() });
-    }
+    const own = { ...shape, ...flat, loops, springs: piece.inside, cell: body.cell, ...untraced() };
+    if (body.picture) things.worn.push({ body, shape: own, triangles: left, loops, texels: [] });
+    if (body.picture || !isCloth) things.shapes.push(own);
+    if (body.picture) continue;
     if (isCloth || isLaid) things.sheets.push({ body, triangles: left, loops, isCloth });
     if (face) things.faces.push(face);
   }

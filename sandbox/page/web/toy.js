@@ -73,7 +73,7 @@ export class Toy extends EventTarget {
     const { commands = [], hashes = [''] } = level.recording ?? {};
     this.run = new Run(this.world, commands, hashes.length - 1);
     this.#ahead = level.begin;
-    this.picture = new Picture(canvas, level.scene, this.world);
+    this.picture = new Picture(canvas, level.scene, this.world, () => { this.#isDirty = true; });
     const maker = new Maker(this.run, level.about.adding, (text) => this.say(text));
     this.hands = new Hands(canvas, this.run, this.camera, maker, {
       isStill: () => this.isPaused, menu: (asked) => this.#tell('menu', asked), speak: (text) => this.#tell('speak', { text }),

@@ -397,6 +397,8 @@ export interface SceneBody extends SceneLook {
   face?: boolean;
   knots?: number[];
   wheel?: Wheel;
+  picture?: string;
+  is_fan?: boolean;
 }
 
 export interface Join extends SceneLook {
@@ -568,6 +570,7 @@ export interface Scene {
   treads: Tread[];
   water: Pool[];
   pictures: Record<string, { rows: number; bytes: string }>;
+  worn: Record<string, string>;
 }
 
 // ---- What is drawn: things.js, pieces.js, draw.js, paint.js
@@ -691,12 +694,29 @@ export interface Sheet {
   parts?: SheetPart[];
 }
 
+// A picture that a part of a body wears; texels: corners of a band around it and of its triangles, 0..1 to the right and
+// down. The slot -1 is the middle of the first loop.
+export interface Worn {
+  body: Body;
+  shape: Shape;
+  triangles: number[][];
+  loops: number[][];
+  texels: number[][];
+}
+
+// A picture, once it is unpacked, and what fills with it over a colour.
+export interface WornPicture {
+  image: ImageBitmap | null;
+  over: Map<string, CanvasPattern>;
+}
+
 export interface Things {
   shapes: Shape[];
   lines: (Strand | Bars)[];
   working: Working[];
   wheels: Wheel[];
   sheets: Sheet[];
+  worn: Worn[];
   faces: Face[];
   balloons: (Body & { knots: number[] })[];
 }

@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO, ClassVar, Literal, TypeVar, cast
+from typing import Annotated, Any, BinaryIO, ClassVar, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
@@ -18,8 +18,10 @@ from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level, Settings
 from sandbox.level.format.foreign import CONFLICT, LFS_POINTER, scan
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
+from sandbox.level.format.slices import at_once
 from sandbox.level.plan.plan import Plan, kept_plan
 from sandbox.level.reading.files import LevelError, keep_file, parse_level
+from sandbox.level.reading.pictures import read_pictures
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
@@ -164,12 +166,7 @@ def read_replay(path: str | Path, partial: bool = False, retold: bool = False) -
     retold: accept one of another physics version, for its level and commands, which can be recorded again.
     Raises ReplayError, naming file and line, for anything that no Recorder wrote.
     """
-    slices = read_in_slices(path, partial, retold)
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            return cast(Replay, end.value)
+    return at_once(read_in_slices(path, partial, retold))
 
 
 def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False) -> Generator[None, None, Replay]:
@@ -350,7 +347,9 @@ def level_of(source: str, head: FirstLine) -> Level:
     if level_digest(head.level) != head.level_sha256:
         raise ReplayError(f"{source}: line 1: the level is not the one that was recorded: its sha256 differs")
     try:
-        return parse_level(_compact(head.level), f"{source}: line 1: level")
+        level = parse_level(_compact(head.level), f"{source}: line 1: level")
+        read_pictures(level, Path(source).parent, source, has_all=False)
+        return level
     except LevelError as error:
         raise ReplayError(*error.faults) from None
 

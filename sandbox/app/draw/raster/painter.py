@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from sandbox.app.draw.colours import unpacked
 from sandbox.app.draw.raster.bodies import (
     FLUSH_CELL,
+    INSIDE,
+    LIT,
     SOFTNESS,
     WIDEST,
     BodyRows,
@@ -180,6 +182,29 @@ class Painter:
         for corner, sheet in zip(arrays.corner[seen].tolist(), arrays.sheet[seen].tolist(), strict=True):
             pygame.draw.polygon(self.surface, unpacked(tones[sheet]), (corner[:2], corner[2:4], corner[4:]))
 
+    def cut_out(self, outlines: Outlines, fill: int, cells: CellArrays, sheets: Slots) -> None:
+        """Draw textured triangles as far as they lie inside outlines, where 0xRRGGBB fills what they leave."""
+        left, top, right, bottom = self.clip.tolist()
+        if not (len(outlines.point) and (np.abs(outlines.point) < FAR).all()):
+            return
+        low, high = np.floor(outlines.point.min(axis=0)), np.ceil(outlines.point.max(axis=0))
+        box = pygame.Rect(low.tolist(), (high - low).tolist()).inflate(2, 2)
+        box = box.clip((left, top, right - left, bottom - top))
+        if not box.size[0] * box.size[1]:
+            return
+        laid, cover = np.full(box.size[::-1], fill, dtype=np.uint32), np.zeros(box.size[::-1], dtype=np.uint32)
+        clip, corner = np.array([0, 0, *box.size], dtype=np.int64), np.array(box.topleft, dtype=np.float64)
+        paint_cells(laid, cells._replace(corner=cells.corner - np.tile(corner, 3)), sheets, np.zeros(9), clip)
+        loops = np.array([[0, len(outlines.start) - 1]], dtype=np.int64)
+        rows = BodyRows(loops, np.array([[0, NO_GRAIN, 0]]), np.zeros((1, 3)), np.zeros((1, 2), dtype=np.int64))
+        self._scratch = scratch = _scratch_for(self.surface.get_size())
+        paint_bodies(
+            cover, Outlines(outlines.point - corner, outlines.start), rows, _WHITE, _UNSTRAINED, scratch.bodies,
+            scratch.place, clip,
+        )  # fmt: skip
+        laid = laid & 0xFFFFFF | (cover & 0xFF) << 24
+        self.surface.blit(pygame.image.frombuffer(laid.tobytes(), box.size, "BGRA"), box)
+
     def shadows(self, thrown: Thrown, shapes: Outlines, offset: Sequence[float], colour: int, strength: float) -> None:
         """Draw shadows; none where kernels are not compiled."""
         if self.exact and strength > 0.0:
@@ -199,6 +224,9 @@ class Painter:
         return Outlines(point, loops.point_start)
 
 
+# What covers all of an outline alike, with white.
+_WHITE = Skins(np.full((1, INSIDE, LIT), 0xFFFFFFFF, dtype=np.uint32), np.zeros((1, 1, 1), dtype=np.int64))
+_UNSTRAINED = Flush(np.zeros((0, 4)), np.zeros(2, dtype=np.int64))
 # One for all painters of a size, which take turns, as it is as large as four pictures; it goes with the last of them.
 _scratches: WeakValueDictionary[tuple[int, int], _Scratch] = WeakValueDictionary()
 

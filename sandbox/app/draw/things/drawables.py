@@ -31,6 +31,7 @@ from sandbox.app.draw.things.level_slots import (
 from sandbox.app.draw.things.members import Members, Strands, Working
 from sandbox.app.draw.things.soft import Shape, Sheets, Soft, shape_of, shapes_of
 from sandbox.app.draw.things.wheels import Balls, DrawnWheel
+from sandbox.app.draw.things.worn import WORN, Worn, round_of, worn_shape
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.keeping.equipment import Joined
@@ -51,6 +52,8 @@ class Drawables:
         self.members, self.strands, self.sheets = Members(), Strands(), Sheets()
         self.wheels: list[DrawnWheel] = []
         self._balloons: list[tuple[int, Actor]] = []
+        # Pictures that are worn, and by which shapes.
+        self._worn: list[tuple[int, Worn]] = []
         self._shapes: list[Shape] = []
         self._faces: list[DrawnFace] = []
         self._ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
@@ -77,6 +80,8 @@ class Drawables:
         if look.skin != "lattice":
             if actor.is_filled:
                 return self._add_filled(actor, there)
+            if look.picture is not None and self._wear_round(actor, there):
+                return []
             if kind == "ring" and there.all() and len(there) == len(actor.slots):
                 self._balloons += [(len(self._shapes), actor)] if look.skin == "balloon" else []
                 self._shapes.append(shape_of(actor, [actor.slots], there, self._radius(actor)))
@@ -91,6 +96,16 @@ class Drawables:
                     self._add_panel(actor, hull)
                     return []
         return self._add_lines(actor, there)
+
+    def _wear_round(self, actor: Actor, there: Mask) -> bool:
+        """Let a ring or a wheel wear its picture; whether it is one, and whole."""
+        around = round_of(actor, there)
+        if around is None:
+            return False
+        radius, (triangles, loops) = self._radius(actor), around
+        self._worn.append((len(self._shapes), Worn.on(actor, triangles, loops, radius)))
+        self._shapes.append(worn_shape(actor, loops, radius))
+        return True
 
     def _add_panel(self, actor: Actor, hull: Slots) -> None:
         look = actor.look
@@ -131,20 +146,26 @@ class Drawables:
 
     def _add_filled(self, actor: Actor, there: Mask) -> list[Join]:
         look, filling = actor.look, actor.filling(there, self._whole)
-        shapes, faces = actor.cached(filling.key, lambda: self._skin(actor, filling.pieces))
+        shapes, faces, worn = actor.cached(filling.key, lambda: self._skin(actor, filling.pieces))
+        self._worn += enumerate(worn, len(self._shapes))
         self._shapes += shapes
         self._faces += faces
-        if look.skin == CLOTH or look.skin in CRATES:
+        if not worn and (look.skin == CLOTH or look.skin in CRATES):
             for piece in filling.pieces:
                 self.sheets.add(actor, piece.left, piece.loops, there)
         own = actor.own or actor
         bare = (there & ~filling.inside)[: len(own.springs)]
         return self._add_lines(own, bare) if bare.any() else []
 
-    def _skin(self, actor: Actor, pieces: list[Piece]) -> tuple[list[Shape], list[DrawnFace]]:
-        look = actor.look
-        shapes = shapes_of(actor, pieces, self._radius(actor)) if look.skin != CLOTH else []
-        return shapes, faces_of(actor, pieces) if look.face and look.skin in SOFT_SKINS and pieces else []
+    def _skin(self, actor: Actor, pieces: list[Piece]) -> tuple[list[Shape], list[DrawnFace], list[Worn]]:
+        look, radius = actor.look, self._radius(actor)
+        faces = faces_of(actor, pieces) if look.face and look.skin in SOFT_SKINS and pieces else []
+        if look.picture is None:
+            return shapes_of(actor, pieces, radius) if look.skin != CLOTH else [], faces, []
+        shapes = [worn_shape(actor, piece.loops, radius) for piece in pieces]
+        state = self._state
+        origin = state.origin[actor.slots] if isinstance(state, Snapshot) else None
+        return shapes, faces, [Worn.on(actor, piece.left, piece.loops, radius, origin) for piece in pieces]
 
     def _add_joins(self, joins: list[Join], ends: Slots) -> None:
         self.working = Working([join for join in joins if join.look.line in WORKING])
@@ -185,6 +206,7 @@ class Drawables:
         for wheel in self.wheels:
             wheel.mark(middle, frame)
         painter.marks(middle, frame.tiles.array)
+        self._draw_worn(painter, frame, is_lattice)
         self._draw_layer(painter, frame, 1, is_lattice)
         front = MarkList()
         if not is_lattice:
@@ -192,6 +214,13 @@ class Drawables:
             self.faces.mark(front, frame)
         self.balls.mark(front, frame)
         painter.marks(front, frame.tiles.array)
+
+    def _draw_worn(self, painter: Painter, frame: Frame, is_lattice: bool) -> None:
+        if is_lattice or not painter.exact:
+            self._draw_layer(painter, frame, WORN, is_lattice)
+            return
+        for k, worn in self._worn:
+            painter.cut_out(self.soft.outlines_of(k), worn.colour, *worn.cells(frame))
 
     def _draw_layer(self, painter: Painter, frame: Frame, number: int, is_lattice: bool) -> None:
         layer = self.soft.layer(number, frame, is_lattice)

@@ -1,7 +1,7 @@
 """What things are drawn from: the slots and looks of each body, ball and spring; a frame; borders of what is filled."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -15,11 +15,13 @@ from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, is_fille
 from sandbox.app.draw.textures import Tiles
 from sandbox.level.assembly.build_world import levels_of
 from sandbox.level.document.model import Level
+from sandbox.level.format.picture import Picture
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.plan.plan import Plan, kept_plan
+from sandbox.level.reading.pictures import pictures_of
 from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA
 from sandbox.physics.keeping.equipment import Joined
@@ -292,8 +294,13 @@ class LevelSlots:
     strikes: Mask
 
 
-def level_slots_of(level: Level, is_welded: bool = True) -> LevelSlots:
-    """The cast of a level; is_welded: particles that are one share a slot, as in a world, not as in the editor."""
+def level_slots_of(
+    level: Level, is_welded: bool = True, pictures: Mapping[str, Picture] | None = None
+) -> LevelSlots:  # fmt: skip
+    """The cast of a level; is_welded: particles that are one share a slot, as in a world, not as in the editor.
+
+    pictures: see body_looks.
+    """
     plan = kept_plan(level) or Plan(level)
     count = plan.layout.particle_count
     slots = np.arange(count, dtype=np.int64)
@@ -301,7 +308,7 @@ def level_slots_of(level: Level, is_welded: bool = True) -> LevelSlots:
         stays = plan.first_of_weld == slots
         slots = (np.cumsum(stays) - 1)[plan.first_of_weld]
     actors, first, spring = [], 0, 0
-    for body, look, made in zip(level.bodies, body_looks(level), plan.bodies, strict=True):
+    for body, look, made in zip(level.bodies, body_looks(level, pictures), plan.bodies, strict=True):
         size, pairs = made.form_count[0], made.pairs
         own = np.arange(spring, spring + len(pairs), dtype=np.int64)
         actors.append(Actor(body, look, made, slots[first : first + size], own, pairs))
@@ -325,9 +332,9 @@ def level_slots_of(level: Level, is_welded: bool = True) -> LevelSlots:
 def joined_slots(level_slots: LevelSlots, joined: Sequence[Joined]) -> LevelSlots:
     """The cast of a level, or of one that bodies have joined while it ran, once these bodies have joined it as well."""
     actors, joins = list(level_slots.actors), list(level_slots.joins)
-    particles, springs = [level_slots.particles], [level_slots.springs]
+    particles, springs, pictures = [level_slots.particles], [level_slots.springs], pictures_of(level_slots.level)
     for each in levels_of(joined):
-        own, first, spring = level_slots_of(each.level), each.first_particle, each.first_spring
+        own, first, spring = level_slots_of(each.level, pictures=pictures), each.first_particle, each.first_spring
         actors += [replace(actor, slots=actor.slots + first, springs=actor.springs + spring) for actor in own.actors]
         joins += [
             Join(join.spring + spring, (join.ends[0] + first, join.ends[1] + first), join.look) for join in own.joins

@@ -190,6 +190,11 @@ class Soft:
             rows.append(np.concatenate([points, np.roll(points, -1, axis=0)], axis=1))
         return np.concatenate(rows)
 
+    def outlines_of(self, k: int) -> Outlines:
+        """The outlines of a shape."""
+        start = self.outlines.start[self._first[k] : self._first[k + 1] + 1]
+        return Outlines(self.outlines.point[start[0] : start[-1]], start - start[0])
+
     def size_of(self, k: int) -> float:
         """About how wide [pixels] a shape is."""
         return float(self._sizes[k])

@@ -7,7 +7,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.contracts.application import Editing
-from sandbox.app.share.page import ProgressBar
+from sandbox.app.widgets.boxes import ProgressBar
 from sandbox.app.widgets.texts import TextBlock
 
 # Sizes in layout units: of the strip, its text, bar and buttons.
