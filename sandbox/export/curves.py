@@ -128,7 +128,7 @@ def card_text(feel: Feel) -> str:
     )
     return "\n".join(
         [
-            f'"{feel.name}", pulled aside and let go. {sentence(feel)}',
+            f'"{feel.name}", pulled and let go. {sentence(feel)}',
             f"  overshoot {percent(numbers.overshoot)}, settles in {short(numbers.settling)} s, seen to pass its place "
             f"{swings}",
             f"  nearest single spring: {spring} (Cs {short(feel.stiffness)}, Cd {short(feel.damping)} in a tick of "

@@ -261,7 +261,7 @@ def test_a_picture_and_a_page_hold_the_card_as_text(card):
 def test_the_shell_prints_a_card_and_writes_a_page(capsys, tmp_path):
     assert main(["feel", "low_door", "bridge", "-o", str(tmp_path / "bridge.html")]) == 0
     out = capsys.readouterr().out
-    assert out.startswith('"bridge", pulled aside and let go. It is bouncy: overshoots by ')
+    assert out.startswith('"bridge", pulled and let go. It is bouncy: overshoots by ')
     assert "nearest single spring: 3." in out
     assert "linear(" in (tmp_path / "bridge.html").read_text()
 
