@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-# How often it is looked at the time [s].
-_EVERY = 0.05
+# How often the watch looks at the time, and after how long it strikes again [s].
+_EVERY, _AGAIN = 0.05, 1.0
 
 
 class TimeUp(BaseException):
@@ -21,20 +21,27 @@ def time_limit(seconds: float) -> Iterator[None]:
     What other programs do counts for nothing. It strikes between two steps of Python, so between ticks and commands.
     """
     thread, end = ctypes.c_ulong(threading.get_ident()), time.process_time() + seconds
-    over, lock = threading.Event(), threading.Lock()
+    over, lock, strike = threading.Event(), threading.Lock(), ctypes.pythonapi.PyThreadState_SetAsyncExc
 
     def watch() -> None:
-        while not over.wait(_EVERY):
+        pause = _EVERY
+        while not over.wait(pause):
             with lock:
-                # More than once: what cannot raise, such as the end of an object, swallows it.
                 if time.process_time() > end and not over.is_set():
-                    ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, ctypes.py_object(TimeUp))
+                    # More than once: what cannot raise, such as the end of an object, swallows it.
+                    strike(thread, ctypes.py_object(TimeUp))
+                    pause = _AGAIN
 
     threading.Thread(target=watch, daemon=True).start()
     try:
         yield
     finally:
-        with lock:
+        try:
+            with lock:
+                over.set()
+        except TimeUp:
+            # Struck in here: the next strike is not yet due.
             over.set()
+        strike(thread, None)
     if time.process_time() > end:
         raise TimeUp
