@@ -42,7 +42,6 @@ from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import LASSO, TOOLS
 from sandbox.editor.tools.snap import Snap, snap
-from sandbox.level.format.level_error import one_line
 
 # Sizes in layout units.
 SIDE_WIDTH = 292.0
@@ -73,8 +72,7 @@ class EditScreen:
         self._tab = "properties"
         self.camera = Camera(viewport=self._viewport())
         self.view = View(self)
-        self.tool = "select"
-        self.snapping = True
+        self.tool, self.snapping = "select", True
         self.folds: dict[str, bool] = {}
         self.chosen_on_pages: dict[str, tuple[Selection, Any]] = {}
         self.shows_lattice = True
@@ -563,9 +561,8 @@ class EditScreen:
 
     def title(self) -> str:
         """Title of the window: the level, * where it is not saved, and its file where that is called otherwise."""
-        name, path = self.document.level.name, self.level_file.path
-        file = f" ({one_line(path.name)})" if path is not None and path.stem != name else ""
-        return name + ("" if self.history.is_saved else "*") + " - Level editor" + file
+        name = self.document.level.name
+        return name + ("" if self.history.is_saved else "*") + " - Level editor" + self.level_file.named_beside(name)
 
     def states(self) -> list[str]:
         """State words for the window's title: the tool, and how many things are selected."""

@@ -65,6 +65,10 @@ class LevelFile:
         self._digest: bytes | None = None
         self._stamp: tuple[int, ...] | None = None
 
+    def named_beside(self, name: str) -> str:
+        """The file in brackets after a level's name, "" where it is called as the level is, or there is none."""
+        return f" ({one_line(self.path.name)})" if self.path is not None and self.path.stem != name else ""
+
     @classmethod
     def open(cls, path: str | os.PathLike[str], folder: Path | None = None) -> tuple["LevelFile", Level]:
         """Open a level to edit it. Raises LevelInUse, or LevelError where it cannot be read."""
