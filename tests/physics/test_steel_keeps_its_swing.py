@@ -254,33 +254,3 @@ def test_counts_of_the_energy_test_begin_with_each_run_and_are_no_state():
     assert state_hash(session.world) == state
     second = run(session, 10).energy_tests
     assert second.passed + second.solved_on + second.slowed_down == 10
-
-
-@pytest.mark.parametrize("corners", [20, 32, 60])
-@pytest.mark.parametrize("substeps, within", [(1, 0.15), (4, 0.04)])
-def test_a_wheel_of_corners_rolls_as_fast_as_its_corners_leave_it(corners, substeps, within):
-    # About each corner that comes down, the angular momentum is kept: omega' (I + M R^2) = omega (I + M R^2 cos d).
-    radius, skin, speed, way = 0.5, 0.001, 2.0, 8.0
-    half = math.pi / corners
-    height = radius * math.cos(half) + skin
-    turns = (2.0 * np.arange(corners) - 1.0) * half - 0.5 * math.pi
-    places = height * np.array([0.0, 1.0]) + radius * np.concatenate(
-        [[(0.0, 0.0)], np.stack([np.cos(turns), np.sin(turns)], axis=1)]
-    )
-    velocities = speed / height * np.stack([places[:, 1], -places[:, 0]], axis=1)
-    rim = [k + 1 for k in range(corners)]
-    session = session_of(**ground(
-        contacts={"friction": 2.0, "restitution": 0.0}, settings={"substeps": substeps}, materials={"m": RIGID},
-        bodies=[{
-            "type": "mesh", "id": "wheel", "particles": places.tolist(), "velocities": velocities.tolist(),
-            "springs": [[0, k] for k in rim] + [[k, k % corners + 1] for k in rim], "particle_radius": skin,
-            "material": "m",
-        }],
-    ))  # fmt: skip
-    w, wheel = session.world, slots_of(session, "wheel")
-    while w.position[wheel[0], 0] < way and session.tick < 600:
-        session.advance()
-    inertia, mass = corners * radius**2, corners + 1
-    kept = (inertia + mass * radius**2 * math.cos(2.0 * half)) / (inertia + mass * radius**2)
-    right = speed * kept ** (way / (2.0 * radius * math.sin(half)))
-    assert right - within < w.velocity[wheel, 0].mean() < right + 0.01

@@ -102,7 +102,6 @@ class ContactConstraints(NamedTuple):
     last_impulse: Annotated[FloatRows, "contacts, 2"]  # [N s]: before a sweep
     search_direction: Annotated[FloatRows, "contacts, 2"]  # [N s]: where the sweeps so far have led
     resisted: Annotated[Floats, "contacts"]  # [N s]: of its rolling resistance, at the smaller radius
-    given: Annotated[FloatRows, "contacts, 2"]  # [N s]: before the first contact begins, see landing.py
     surface: Annotated[Floats, "particles"]  # [m/s]: spin times radius, which sweeps change
     calm: Annotated[Floats, "contacts"]  # 1, or 0 where what it touches is fast or not rigid
     active: ActiveSet  # see active_solve.py
@@ -146,8 +145,8 @@ def terms_between(terms: ContactConstraints, first: int, last: int) -> ContactCo
     """The constraints of the contacts first..last, in the same arrays."""
     return ContactConstraints(
         terms.bias[first:last], terms.normal[first:last], terms.coupling[first:last], terms.tangent[first:last],
-        terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last],
-        terms.given[first:last], terms.surface, terms.calm[first:last], terms.active,
+        terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last], terms.surface,
+        terms.calm[first:last], terms.active,
     )  # fmt: skip
 
 

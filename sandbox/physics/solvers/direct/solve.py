@@ -33,7 +33,6 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_surfaces,
     mark_calm,
 )
-from sandbox.physics.solvers.contact.landing import add_given, divide_step, give, is_landing
 from sandbox.physics.solvers.direct.energy_budget import (
     MORE_SOLVES,
     is_new,
@@ -346,7 +345,7 @@ def _push_and_test(
     # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
     sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
     most = max(sweeps, min(CALM_SWEEPS, affordable))
-    done = _push_all(contacts, workspace, system, state, start, sweeps, most, affordable, begins, h)
+    done = _push_all(contacts, workspace, system, state, sweeps, most, affordable, begins, h)
     _apply_impulses(workspace, system, state, h)
     check_energy(contacts, workspace, system, state, start)
     return affordable - done
@@ -354,8 +353,8 @@ def _push_and_test(
 
 @inner_kernel
 def _push_all(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, sweeps: int,
-    most: int, affordable: int, begins: bool, h: float,
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, sweeps: int, most: int,
+    affordable: int, begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Sweep an island's contacts and joints, and look for impacts before where the step begins; what it took, in sweeps.
     # The impulses J^T lambda of bodies are left in `impulse`.
@@ -370,14 +369,10 @@ def _push_all(
         limit_pushes(contacts, workspace, h)
         mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid, islands.firm)
         propagate_impacts(contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, h)
-        spent = _divide(contacts, workspace, state, system, start, sweeps, h)
-    else:
-        spent = 0
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, joints)
     # Joints change what an exact solve has found.
     exactly = float(affordable) if joints.listed.shape[0] == 0 else 0.0
-    give(contacts, terms, islands.delta_v, inverse_mass, delassus)
     if has_coarse(islands):
         done = _sweep_by_mass(contacts, workspace, system, state, min(SWEEPS_BY_MASS, most))
     else:
@@ -385,7 +380,6 @@ def _push_all(
             contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
             float(_cost_of(contacts, workspace, system)),
         )  # fmt: skip
-    add_given(contacts, terms)
     gather_push(joints)
     for i in range(joints.listed.shape[0]):
         k = joints.listed[i]
@@ -395,28 +389,7 @@ def _push_all(
                 islands.impulse[islands.row[p], 0] = joints.push[p, 0]
                 islands.impulse[islands.row[p], 1] = joints.push[p, 1]
     _add_push(contacts, islands)
-    return spent + done
-
-
-@inner_kernel
-def _divide(
-    contacts: Contacts, workspace: IslandWorkspace, state: State, system: System, start: FloatRows, sweeps: int,
-    h: float,
-) -> int:  # fmt: skip
-    # Divide a step in which contacts begin; what it took, in sweeps. Joints are left out, and bodies without a block.
-    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
-    for c in range(contacts.particle.shape[0]):
-        terms.given[c, 0] = terms.given[c, 1] = 0.0
-    if delassus.joints.listed.shape[0] > 0 or has_coarse(islands):
-        return 0
-    if not is_landing(contacts, terms, start, islands.delta_v, h):
-        return 0
-    spent = solve_contacts(
-        contacts, terms, islands.v0, islands.delta_v, state.inverse_mass, delassus, sweeps, sweeps, 0.0, 1.0
-    )  # fmt: skip
-    divide_step(contacts, terms, islands.v0, islands.delta_v, h)
-    _clear(islands, system, terms.surface, state)
-    return spent
+    return done
 
 
 @inner_kernel
