@@ -81,7 +81,7 @@ def test_a_toy_plays_by_itself_and_all_that_comes_is_light_and_from_here(
     assert not tab.evaluate("[...document.images].at(-1).currentSrc")
     come = tab.evaluate(COME)
     assert {origin for origin, _ in come} == {address.rpartition("/")[0]}
-    assert 250_000 < sum(size for _, size in come) <= 600_000
+    assert 250_000 < sum(size for _, size in come) <= 500_000
     assert tab.faults == []
 
 
