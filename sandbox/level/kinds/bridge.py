@@ -62,7 +62,7 @@ class Bridge(Expansion[BridgeDef]):
 
     def named_pins(self) -> list[int]:
         """Particles of both rows at the ends that `pin` names."""
-        top = [self.named_particles[end] for end in self.body.pin]
+        top = super().named_pins()
         return top + [particle + self.body.segments + 1 for particle in top]
 
     def outline_faults(self, path: str) -> Iterator[Fault]:

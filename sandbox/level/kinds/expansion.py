@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, ClassVar, Generic, TypeVar, get_args
+from typing import ClassVar, Generic, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef
-from sandbox.level.kinds.geometry import Pairs, Points, distances
+from sandbox.level.kinds.geometry import Pairs, Points, distances, pair_keys
 from sandbox.physics.keeping.equipment import StiffForm
 from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
@@ -74,9 +74,9 @@ class Expansion(Generic[Body]):
         """Index of each particle that has a name besides its number: `start` of `id.start`."""
         return {}
 
-    def named_pins(self) -> Any:
-        """Indices of the particles that `pin` holds."""
-        return []
+    def named_pins(self) -> list[int]:
+        """Indices of the particles that `pin` holds: those that it names."""
+        return [self.named_particles[name] for name in self.body.__dict__.get("pin", ())]
 
     @cached_property
     def mass(self) -> Floats:
@@ -117,7 +117,7 @@ class Expansion(Generic[Body]):
     @property
     def bending(self) -> BendingDef | None:
         """Stiffness of the angles between springs, if the body has any."""
-        return None
+        return self.body.__dict__.get("bending")
 
     @property
     def motor(self) -> MotorDef | None:
@@ -200,7 +200,7 @@ class Expansion(Generic[Body]):
     def _have_sides(self, polygons: Pairs) -> NDArray[np.bool_]:
         """Whether springs that are not cut lie along all sides of polygons (t, k)."""
         sides = np.stack([polygons, np.roll(polygons, -1, axis=1)], axis=-1)
-        return np.asarray(np.isin(_keys(sides), _keys(self.pairs)).all(axis=1))
+        return np.asarray(np.isin(pair_keys(sides), pair_keys(self.pairs)).all(axis=1))
 
     @cached_property
     def bending_constraints(self) -> Pairs:
@@ -291,8 +291,3 @@ def _halved_other_way(one: list[int], other: list[int]) -> list[list[int]]:
         return []
     at, (b,), (d,) = one.index(beyond[0]), beyond, beside
     return [[b, one[(at + 1) % 3], d], [b, d, one[(at + 2) % 3]]]
-
-
-def _keys(pairs: Pairs) -> Pairs:
-    low, high = pairs.min(axis=-1), pairs.max(axis=-1)
-    return np.asarray(low << 32 | high)

@@ -30,6 +30,12 @@ def distances(points: Points, pairs: Pairs) -> Points:
     return lengths(points[pairs[:, 1]] - points[pairs[:, 0]])
 
 
+def pair_keys(pairs: Pairs) -> Pairs:
+    """A number for each pair (..., 2) of particles, in whatever order."""
+    low, high = pairs.min(axis=-1), pairs.max(axis=-1)
+    return np.asarray(low << 32 | high)
+
+
 def turn(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle [rad], rounded."""
     return round(math.cos(angle), TRIGONOMETRY_DECIMALS), round(math.sin(angle), TRIGONOMETRY_DECIMALS)

@@ -62,10 +62,6 @@ class Girder(Expansion[GirderDef]):
         """The ends of the first row."""
         return {"start": 0, "end": self.body.segments}
 
-    def named_pins(self) -> list[int]:
-        """The ends that are held."""
-        return [self.named_particles[end] for end in self.body.pin]
-
     def outline_faults(self, path: str) -> Iterator[Fault]:
         """Faults of a girder without length, or whose second row leaves the world."""
         body = self.body

@@ -71,10 +71,6 @@ class Mesh(Expansion[MeshDef]):
         velocity = super().velocity
         return velocity if self.body.velocities is None else velocity + np.array(self.body.velocities)
 
-    @property
-    def bending(self) -> BendingDef | None:
-        """Stiffness of bending, if the mesh has any."""
-        return self.body.bending
 
     @property
     def edges(self) -> NDArray[np.int8]:

@@ -51,10 +51,6 @@ class Rope(Expansion[RopeDef]):
         """The particles at both ends, by name."""
         return {"start": 0, "end": self.body.segments}
 
-    def named_pins(self) -> list[int]:
-        """The ends that are held."""
-        return [self.named_particles[end] for end in self.body.pin]
-
     @cached_property
     def mass(self) -> Floats:
         """Mass [kg] (n,); the last may have its own."""
@@ -70,7 +66,3 @@ class Rope(Expansion[RopeDef]):
             return super().rest_length
         return np.full(len(self.pairs), self.body.rest_length)
 
-    @property
-    def bending(self) -> BendingDef | None:
-        """Stiffness of bending, if the rope has any."""
-        return self.body.bending

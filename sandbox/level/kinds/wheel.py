@@ -72,10 +72,6 @@ class Wheel(Expansion[WheelDef]):
         """The hub."""
         return {"hub": 0}
 
-    def named_pins(self) -> list[int]:
-        """The hub, if `pin` names it."""
-        return [0] if self.body.pin else []
-
     @cached_property
     def mass(self) -> Floats:
         """Mass [kg] (n,); the hub may have its own."""

@@ -19,6 +19,7 @@ from sandbox.level.format.picture import Picture
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
+from sandbox.level.kinds.geometry import pair_keys
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.plan.plan import Plan, kept_plan
 from sandbox.level.reading.pictures import pictures_of
@@ -359,16 +360,10 @@ def grown_slots(level_slots: LevelSlots, state: Snapshot) -> LevelSlots:
     return replace(level_slots, actors=actors, particles=particles, springs=springs)
 
 
-def keys_of(pairs: Slots) -> Slots:
-    """A number for each pair of particles, in either order."""
-    low, high = pairs.min(axis=-1), pairs.max(axis=-1)
-    return np.asarray(low << 32 | high)
-
-
 def sides_of(triangles: Slots, pairs: Slots) -> Slots:
     """Index (t, 3) into pairs of the spring along each side of triangles (t, 3), -1 where there is none."""
-    sides = keys_of(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1))
-    known = keys_of(pairs)
+    sides = pair_keys(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1))
+    known = pair_keys(pairs)
     order = np.argsort(known, kind="stable")
     place = np.minimum(np.searchsorted(known[order], sides), max(len(known) - 1, 0))
     if not len(known):
