@@ -200,6 +200,11 @@ class Scene:
         """Index of the particle of that name. Raises LookupError."""
         return self.parts.names.layout.slot(name)
 
+    def place(self, slot: int) -> tuple[float, float]:
+        """Place [m] of a particle."""
+        x, y = self.position[slot].tolist()
+        return x, y
+
     def spring_name(self, spring: int) -> str:
         """Name of a spring: `deck:20`, of a loose one `:20`."""
         kind, key = self.items[int(self.spring_item[spring])]

@@ -50,8 +50,7 @@ def _held(situation: Situation, name: str) -> bool:
 
 
 def _point(situation: Situation, name: str) -> Point:
-    x, y = situation.scene.position[situation.scene.slot(name)].tolist()
-    return x, y
+    return situation.scene.place(situation.scene.slot(name))
 
 
 def _is_slack(situation: Situation) -> bool:

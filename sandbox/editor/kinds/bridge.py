@@ -41,16 +41,18 @@ class BridgeDrawing(LineDrawing[TrussOptions]):
     defaults = TrussOptions()
     kind = "bridge"
     start_hint = "Drag along the top of the bridge, or click both ends"
+    # Height of a cell that fits, in cell lengths.
+    proportion: ClassVar[float] = 1.0
 
     def fitting(self, points: list[Snap]) -> int:
         """Number of cells of about 0.5 m that fit."""
         return fitting_count(length(points), CELL_LENGTH, *CELLS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A bridge's own fields."""
+        """The ends, and a height that fits the cells where none is set."""
         height = self.options.height
         if height is None:
-            height = rounded(length(points) / self.segments(points))
+            height = rounded(self.proportion * length(points) / self.count(points))
         return {**self.ends(points), "height": height}
 
 

@@ -5,13 +5,8 @@ from typing import Any, ClassVar
 
 from sandbox.editor.kinds.bridge import BridgeDrawing
 from sandbox.editor.kinds.editing import BodyEditing, PlaneMap
-from sandbox.editor.tools.drawing_bodies import length, rounded
 from sandbox.editor.tools.drawing_tool import EditorTool
-from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.girder import GirderDef
-
-# An equilateral cell is so high, in cell lengths.
-EQUILATERAL = math.sqrt(3.0) / 2.0
 
 
 class GirderDrawing(BridgeDrawing):
@@ -19,13 +14,8 @@ class GirderDrawing(BridgeDrawing):
 
     kind = "girder"
     start_hint = "Drag along the girder, or click both ends"
-
-    def fields(self, points: list[Snap]) -> dict[str, Any]:
-        """A girder's own fields."""
-        height = self.options.height
-        if height is None:
-            height = rounded(EQUILATERAL * length(points) / self.segments(points))
-        return {**self.ends(points), "height": height}
+    # Cells are equilateral.
+    proportion = math.sqrt(3.0) / 2.0
 
 
 class GirderEditing(BodyEditing[GirderDef]):

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from sandbox.editor.document import EditError
 from sandbox.editor.kinds.editing import BodyEditing, PlaneMap, mapped_centre
-from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
+from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded, width_and_height
 from sandbox.editor.tools.drawing_options import (
     BodyOptions,
     count_option,
@@ -108,8 +108,7 @@ class BoxDrawing(JellyDrawing):
 
     def sizes(self, points: list[Snap]) -> str:
         """Width and height."""
-        (ax, ay), (bx, by) = points[0].point, points[1].point
-        return f"{abs(bx - ax):.3g} m x {abs(by - ay):.3g} m"
+        return width_and_height(points)
 
 
 class CircleDrawing(JellyDrawing):

@@ -45,7 +45,7 @@ class RingDrawing(RoundDrawing[RingOptions]):
 
     defaults = RingOptions()
     kind = "ring"
-    counted = "segments"
+    parts = "segments"
 
     def joins(self, index: int) -> bool:
         """False: a ring has no particle in its centre to join."""
@@ -57,16 +57,9 @@ class RingDrawing(RoundDrawing[RingOptions]):
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
         """A ring's own fields."""
-        ring = {**self.disc(points), "segments": self._parts(points), "inflation": self.options.inflation}
+        ring = {**self.disc(points), "segments": self.count(points), "inflation": self.options.inflation}
         # Without bending a ring has no firmness, and lies down as far as its air lets it.
         return ring if self.options.sag is None else ring | {"bending": BendingDef()}
-
-    def _parts(self, points: list[Snap]) -> int:
-        return self.fitting(points) if self.options.segments is None else self.options.segments
-
-    def sizes(self, points: list[Snap]) -> str:
-        """Radius and number of segments."""
-        return f"radius {length(points):.3g} m, {self._parts(points)} segments"
 
 
 class RingEditing(BodyEditing[RingDef]):

@@ -57,7 +57,7 @@ class RopeDrawing(LineDrawing[RopeOptions]):
         """A rope's own fields."""
         rest = None
         if self.options.slack != 0.0:
-            rest = rounded((1.0 + self.options.slack) * length(points) / self.segments(points))
+            rest = rounded((1.0 + self.options.slack) * length(points) / self.count(points))
         return {**self.ends(points), "end_mass": self.options.end_mass, "rest_length": rest}
 
 

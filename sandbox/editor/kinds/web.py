@@ -50,7 +50,7 @@ class WebDrawing(RoundDrawing[WebOptions]):
 
     def sizes(self, points: list[Snap]) -> str:
         """Radius and numbers of parts."""
-        return f"radius {length(points):.3g} m, {self.options.spokes} spokes, {self._rings(points)} rings"
+        return f"{super().sizes(points)}, {self._rings(points)} rings"
 
 
 class WebEditing(BodyEditing[WebDef]):

@@ -54,7 +54,6 @@ class RimDrawing(RoundDrawing[AnyRimOptions], Generic[AnyRimOptions]):
     """A wheel from its hub to its rim, whatever becomes of its hub."""
 
     kind = "wheel"
-    counted = "segments"
 
     def fitting(self, points: list[Snap]) -> int:
         """0.5 m of rim to each spoke; an even number, as the box around an odd one is crooked."""
@@ -66,15 +65,8 @@ class RimDrawing(RoundDrawing[AnyRimOptions], Generic[AnyRimOptions]):
         return {
             **self.disc(points),
             "thickness": rounded(length(points) / 4.0) if thickness is None else thickness,
-            "segments": self._spokes(points),
+            "segments": self.count(points),
         }
-
-    def _spokes(self, points: list[Snap]) -> int:
-        return self.fitting(points) if self.options.segments is None else self.options.segments
-
-    def sizes(self, points: list[Snap]) -> str:
-        """Radius and number of spokes."""
-        return f"radius {length(points):.3g} m, {self._spokes(points)} spokes"
 
 
 class WheelDrawing(RimDrawing[WheelOptions]):

@@ -1,7 +1,7 @@
 """Checks that no run of their level can pass, or none can fail."""
 
 from sandbox.editor.items import Item, Selection
-from sandbox.editor.lint.finding import Finding, Rule, Severity, place_of
+from sandbox.editor.lint.finding import Finding, Rule, Severity
 from sandbox.editor.scene import Scene
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
@@ -48,7 +48,7 @@ def hopeless_checks(level: Level, scene: Scene) -> Rule:
             fault = "hint", "is measured before the first tick, when nothing has happened yet; let it wait longer"
         if fault is not None:
             items: Selection = frozenset() if slot is None else frozenset([scene.items[int(scene.particle_item[slot])]])
-            place = None if slot is None else place_of(scene, slot)
+            place = None if slot is None else scene.place(slot)
             yield Finding(fault[0], f'Check "{check.name}" {fault[1]}', items, place)
 
 
@@ -86,7 +86,7 @@ def _fault(check: CheckDef, scene: Scene, slot: int | None) -> tuple[Severity, s
         return "warning", "can never hold: every particle is pinned, so nothing moves; unpin some"
     if slot is None or check.metric not in PINNED_METRICS or not scene.pinned[slot]:
         return None
-    x, y = place_of(scene, slot)
+    x, y = scene.place(slot)
     value = {"x": x, "y": y, "speed": 0.0}[check.metric]
     so = f"{check.metric} stays {value:g}, because {check.particle} is pinned"
     if low <= value <= high:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sandbox.editor.document import Document, select
 from sandbox.editor.edits.moving import move
 from sandbox.editor.items import Item
-from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, place_of
+from sandbox.editor.lint.finding import Finding, Remedy, Rule, called
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
@@ -82,7 +82,7 @@ def _buried(scene: Scene, slots: Slots, out: Floats, where: str) -> Rule:
         text = f"{called(scene.level, item)} starts{some} {where}, and will be pushed out; move it"
         x, y = (out[worst] + ROOM * np.sign(out[worst])).tolist()
         remedy = Remedy("Move it out", _moved(item, x, y))
-        yield Finding("warning", text, frozenset([item]), place_of(scene, int(slots[worst])), remedy,
+        yield Finding("warning", text, frozenset([item]), scene.place(int(slots[worst])), remedy,
                       f"{{count}} things start {where}, and will be pushed out; move them")  # fmt: skip
         yield None
 
@@ -108,9 +108,9 @@ def turning_in_vain(level: Level, scene: Scene) -> Rule:
                 f"{MOST_ROLLING:g} heaps do not come to rest; lower it, or let it not roll"
             )
             many = f"{{count}} discs have a rolling resistance above {MOST_ROLLING:g}: no heap comes to rest; lower it"
-            yield Finding("warning", text, frozenset([item]), place_of(scene, slot), many=many)
+            yield Finding("warning", text, frozenset([item]), scene.place(slot), many=many)
         if particle.spin != 0.0 and held[slot]:
             text = f"{called(level, item)} is held and does not turn; its spin of {particle.spin:g} rad/s is lost"
             many = "{count} particles are held and do not turn; their spin is lost"
-            yield Finding("hint", text, frozenset([item]), place_of(scene, slot), many=many)
+            yield Finding("hint", text, frozenset([item]), scene.place(slot), many=many)
     yield None

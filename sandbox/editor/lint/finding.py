@@ -116,12 +116,6 @@ def called_spring(scene: Scene, spring: int) -> str:
     return called(scene.level, item) if item.kind == "spring" else scene.spring_name(spring)
 
 
-def place_of(scene: Scene, slot: int) -> tuple[float, float]:
-    """Place [m] of a particle."""
-    x, y = scene.position[slot].tolist()
-    return x, y
-
-
 def middle_of(scene: Scene, spring: int) -> tuple[float, float]:
     """Middle [m] of a spring."""
     ends = scene.position[[scene.particle_a[spring], scene.particle_b[spring]]]

@@ -153,7 +153,7 @@ def _pinned(scene: Scene, question: QuestionDef) -> str | None:
     zone, name = question.zone or question.crosses, question.particle
     if zone is None or name is None or not scene.pinned[scene.slot(name)]:
         return None
-    x, y = scene.position[scene.slot(name)].tolist()
+    x, y = scene.place(scene.slot(name))
     box = scene.bounds(frozenset([Item("zone", zone)]))
     if box is None or (box[0] <= x <= box[2] and box[1] <= y <= box[3]):
         return None

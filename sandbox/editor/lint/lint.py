@@ -20,7 +20,6 @@ from sandbox.editor.lint.finding import (
     falling_particles,
     listed,
     middle_of,
-    place_of,
 )
 from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters, open_goals, vain_goals
 from sandbox.editor.lint.hydraulics import hydraulics_at_another_length
@@ -84,7 +83,7 @@ def falling_parts(level: Level, scene: Scene) -> Rule:
             )
         text = f"{subject} will fall out of sight: nothing holds it; pin a particle of it or join it to something"
         many = "{count} things will fall out of sight: nothing holds them; pin them, join them, or draw ground below"
-        yield Finding("warning", text, frozenset(items), place_of(scene, int(slots[0])), GROUND, many)
+        yield Finding("warning", text, frozenset(items), scene.place(int(slots[0])), GROUND, many)
         yield None
 
 
@@ -110,5 +109,5 @@ def idle_items(scene: Scene) -> Rule:
         text = f"{called(scene.level, item)} is pinned and holds nothing; join something to it or delete it"
         many = "{count} particles are pinned and hold nothing; join something to them or delete them"
         chosen = frozenset([item])
-        yield Finding("hint", text, chosen, place_of(scene, slot), deletion(chosen), many)
+        yield Finding("hint", text, chosen, scene.place(slot), deletion(chosen), many)
     yield None

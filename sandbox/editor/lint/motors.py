@@ -3,7 +3,7 @@
 import numpy as np
 
 from sandbox.editor.items import Item
-from sandbox.editor.lint.finding import DIRECT, Finding, Rule, called, connected_parts, place_of
+from sandbox.editor.lint.finding import DIRECT, Finding, Rule, called, connected_parts
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.kinds.wheel import WheelDef
@@ -26,7 +26,7 @@ def motors_in_vain(level: Level, scene: Scene) -> Rule:
             f"the {level.settings.solver.replace('_', ' ')} solver cannot carry wheels under a load, so motors turn "
             "them on the spot; use the direct or the iterative solver"
         )
-        yield Finding("warning", text, items, place_of(scene, scene.slot(f"{driven[0][1].id}.hub")), DIRECT)
+        yield Finding("warning", text, items, scene.place(scene.slot(f"{driven[0][1].id}.hub")), DIRECT)
     if level.has_contacts:
         yield None
         yield from _weak(level, scene, driven)
@@ -40,14 +40,14 @@ def _idle(scene: Scene, driven: list[tuple[int, WheelDef]]) -> Rule:
         if not _joined(scene, int(first[hub]), index, True):
             text = f"the motor of {called(scene.level, item)} turns nothing: no spoke joins its rim to its hub"
             many = "the motors of {count} wheels turn nothing: no spoke joins rim and hub"
-            yield Finding("warning", text, frozenset([item]), place_of(scene, hub), many=many)
+            yield Finding("warning", text, frozenset([item]), scene.place(hub), many=many)
         elif not scene.pinned[hub] and not _joined(scene, int(first[hub]), index, False):
             text = (
                 f"the motor of {called(scene.level, item)} does nothing: its hub is fixed to nothing; "
                 "pin it, or join a spring to it"
             )
             many = "the motors of {count} wheels do nothing: their hubs are fixed to nothing; pin them, or join springs"
-            yield Finding("warning", text, frozenset([item]), place_of(scene, hub), many=many)
+            yield Finding("warning", text, frozenset([item]), scene.place(hub), many=many)
         yield None
 
 
@@ -81,5 +81,5 @@ def _weak(level: Level, scene: Scene, driven: list[tuple[int, WheelDef]]) -> Rul
                 f"the torque of {whose}, {torque:.3g} N m in all, does not lift {weight / gravity:.3g} kg over the "
                 f"corners of its wheels: that takes {needed:.3g} N m; give more, or wheels of more segments"
             )
-            yield Finding("hint", text, frozenset(items), place_of(scene, scene.slot(f"{wheels[0].id}.hub")))
+            yield Finding("hint", text, frozenset(items), scene.place(scene.slot(f"{wheels[0].id}.hub")))
         yield None

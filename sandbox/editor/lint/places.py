@@ -6,7 +6,7 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.lint.finding import Finding, Rule, called, joint, place_of
+from sandbox.editor.lint.finding import Finding, Rule, called, joint
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS
@@ -61,7 +61,7 @@ def overlapping_particles(scene: Scene) -> Rule:
         both = frozenset(scene.items[index] for index in divmod(pair, len(scene.items)))
         remedy = None if several else joint(str(scene.names(slot)), str(scene.names(other)))
         many = "{count} pairs lie on each other and are not joined; join them or move them away"
-        yield Finding("warning", text, both, place_of(scene, slot), remedy, many)
+        yield Finding("warning", text, both, scene.place(slot), remedy, many)
         yield None
 
 

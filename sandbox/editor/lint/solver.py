@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.editor.lint.finding import DIRECT, Finding, Rule, called, called_spring, middle_of, place_of
+from sandbox.editor.lint.finding import DIRECT, Finding, Rule, called, called_spring, middle_of
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.plan.materials import add_constraints, add_forms, coefficients
@@ -74,7 +74,7 @@ def _constraints_past_proven(level: Level, scene: Scene, world: World, load: NDA
         )
         slot = int(world.corner_particle[world.constraint_first[worst]])
         many = "areas or angles of {count} bodies are past what the solver is proven to hold; use the direct solver"
-        yield Finding("warning", text, frozenset([item]), place_of(scene, slot), DIRECT, many)
+        yield Finding("warning", text, frozenset([item]), scene.place(slot), DIRECT, many)
         yield None
 
 

@@ -10,7 +10,6 @@ from sandbox.editor.edits.additions import first_torque
 from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.placing import add_spring
 from sandbox.editor.kinds.wheel import RimDrawing, RimOptions
-from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import known_material, length
 from sandbox.editor.tools.drawing_options import flag_option, number_option
 from sandbox.editor.tools.drawing_tool import EditorTool, staged
@@ -18,7 +17,7 @@ from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.limits import TORQUE_LIMIT, TURN_LIMIT
-from sandbox.level.format.quantities import Point, replaced
+from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.wheel import WheelDef
 
@@ -49,10 +48,6 @@ class AxleDrawing(RimDrawing[AxleOptions]):
 
     defaults = AxleOptions()
     start_hint = "Press on a body, where the axle goes, and drag to the rim; or click both"
-
-    def __init__(self, options: AxleOptions | None = None, reach: float = 0.0) -> None:
-        super().__init__(options, reach)
-        self._scene: Scene | None = None
 
     def ghost(self, document: Document) -> Document | None:
         """The wheel and its struts, with stand-ins of the particles that they end at."""
@@ -111,9 +106,7 @@ class AxleDrawing(RimDrawing[AxleOptions]):
         axle = points[0]
         if axle.name is not None:
             return []
-        if self._scene is None or self._scene.level is not document.level:
-            self._scene = make_scene(document.level, self._scene)
-        scene, bodies = self._scene, document.level.bodies
+        scene, bodies = self._scene_of(document), document.level.bodies
         apart = scene.position - np.array(axle.point)
         distance = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
         is_wheel = np.array([isinstance(body, WheelDef) for body in bodies], dtype=np.bool_)
@@ -130,12 +123,7 @@ class AxleDrawing(RimDrawing[AxleOptions]):
         if not len(second):
             raise EditError("start nearer to the body, so that it can hold the axle")
         chosen = list(dict.fromkeys([0, int(second[0]), *range(len(slots))]))[:STRUTS]
-        return [Snap(_place(scene, slot), "particle", scene.names(slot)) for slot in slots[chosen].tolist()]
-
-
-def _place(scene: Scene, slot: int) -> Point:
-    x, y = scene.position[slot].tolist()
-    return x, y
+        return [Snap(scene.place(slot), "particle", scene.names(slot)) for slot in slots[chosen].tolist()]
 
 
 AXLE = EditorTool("axle", "Shift+Q", "Axle: a wheel on a body, with a motor", AxleDrawing)

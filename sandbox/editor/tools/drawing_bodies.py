@@ -122,6 +122,12 @@ def direction(points: list[Snap]) -> str:
     return f"{math.dist(points[0].point, points[1].point):.3g} m, {math.degrees(math.atan2(by - ay, bx - ax)):.3g}°"
 
 
+def width_and_height(points: list[Snap]) -> str:
+    """Width and height of the box that was drawn, for the person."""
+    (ax, ay), (bx, by) = points[0].point, points[1].point
+    return f"{abs(bx - ax):.3g} m x {abs(by - ay):.3g} m"
+
+
 def length(points: list[Snap]) -> float:
     """Distance [m] of the two points of a gesture; 0 before there are two."""
     return math.dist(points[0].point, points[1].point) if len(points) == 2 else 0.0
@@ -141,22 +147,20 @@ class LineDrawing(BodyDrawing[AnyLineOptions], Generic[AnyLineOptions]):
         return {
             "start": points[0].point,
             "end": points[1].point,
-            "segments": self.segments(points),
+            "segments": self.count(points),
             "pin": pins,
         }
 
-    def segments(self, points: list[Snap]) -> int:
-        """Number of segments."""
-        return self.fitting(points) if self.options.segments is None else self.options.segments
-
     def sizes(self, points: list[Snap]) -> str:
         """Length, angle and number of parts."""
-        return f"{direction(points)}, {self.segments(points)} {self.parts}"
+        return f"{direction(points)}, {self.count(points)} {self.parts}"
 
 
 class RoundDrawing(BodyDrawing[AnyBodyOptions], Generic[AnyBodyOptions]):
     """A round body from its centre to a point of its rim, where its first spoke points."""
 
+    counted = "segments"
+    parts = "spokes"
     start_hint = "Drag from the centre to the rim, or click both"
     end_hint = "Click or release at the rim; + and - change the number of segments"
 
@@ -168,3 +172,7 @@ class RoundDrawing(BodyDrawing[AnyBodyOptions], Generic[AnyBodyOptions]):
             "angle": _angle_of(rim_x - x, rim_y - y),
             "radius": rounded(length(points)),
         }
+
+    def sizes(self, points: list[Snap]) -> str:
+        """Radius and number of parts."""
+        return f"radius {length(points):.3g} m, {self.count(points)} {self.parts}"

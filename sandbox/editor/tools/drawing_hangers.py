@@ -1,7 +1,7 @@
 """The hangers tool: many springs between two ropes, bridges or girders in one drag."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.names import free_ids
 from sandbox.editor.items import Item
-from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.scene import Scene
 from sandbox.editor.tools.drawing_bodies import known_material
 from sandbox.editor.tools.drawing_options import Options, count_option, material_option
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool, staged
@@ -47,7 +47,6 @@ class HangersDrawing(Drawing[HangersOptions]):
 
     def __init__(self, options: HangersOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
-        self._scene: Scene | None = None
         self._most = self._made = 1
 
     @property
@@ -91,9 +90,7 @@ class HangersDrawing(Drawing[HangersOptions]):
 
     def _pairs(self, document: Document, points: list[Snap]) -> list[tuple[Snap, Snap]]:
         """The particles that hangers join. Raises EditError."""
-        if self._scene is None or self._scene.level is not document.level:
-            self._scene = make_scene(document.level, self._scene)
-        scene = self._scene
+        scene = self._scene_of(document)
         (upper, first), (lower, last) = (
             _row(scene, point, verb) for point, verb in zip(points, ("begin", "end"), strict=True)
         )
@@ -179,8 +176,7 @@ def _between(row: Slots, first: int, last: int) -> Slots:
 
 
 def _snap(scene: Scene, slot: int) -> Snap:
-    x, y = scene.position[slot].tolist()
-    return replace(Snap((x, y)), kind="particle", name=scene.names(slot))
+    return Snap(scene.place(slot), "particle", scene.names(slot))
 
 
 HANGERS = EditorTool("hangers", "Shift+S", "Hangers: many springs between two ropes", HangersDrawing)

@@ -22,15 +22,11 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
     start_hint = "Click corner after corner, or draw the outline in one stroke"
     end_hint = "Click the next corner; the first one, a double click or Enter closes it, Backspace takes one back"
     fewest = 3
+    has_outline = True
 
     def __init__(self, options: AnyOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
         self.freehand = False
-
-    @property
-    def outline(self) -> list[Point]:
-        """The corners so far, and the pointer as the next."""
-        return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:
         """False: corners have no particles of their own."""

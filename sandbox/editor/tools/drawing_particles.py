@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from sandbox.editor.document import Document, EditError, select
 from sandbox.editor.edits.placing import add_particle, add_spring, set_pinned, weld
 from sandbox.editor.items import Selection
-from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_bodies import direction, known_material
 from sandbox.editor.tools.drawing_options import Options, flag_option, mass_option, material_option, number_option
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool, staged
@@ -97,7 +96,6 @@ class PinDrawing(Drawing[PinOptions]):
 
     def __init__(self, options: PinOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
-        self._scene: Scene | None = None
         self._offer = PIN_HINT
 
     @property
@@ -128,10 +126,9 @@ class PinDrawing(Drawing[PinOptions]):
         return new_particle(stage, points[0], 1.0, pinned=not pinned)
 
     def _is_pinned(self, document: Document, name: str) -> bool:
-        if self._scene is None or self._scene.level is not document.level:
-            self._scene = make_scene(document.level, self._scene)
+        scene = self._scene_of(document)
         try:
-            return bool(self._scene.pinned[self._scene.slot(name)])
+            return bool(scene.pinned[scene.slot(name)])
         except LookupError as error:
             raise EditError(str(error.args[0])) from None
 

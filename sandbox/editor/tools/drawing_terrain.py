@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import add_terrain, add_zone, set_walls, with_corners
-from sandbox.editor.tools.drawing_bodies import direction, rounded
+from sandbox.editor.tools.drawing_bodies import direction, rounded, width_and_height
 from sandbox.editor.tools.drawing_options import AnyOptions, Options, number_option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
@@ -105,8 +105,7 @@ class UprightDrawing(Drawing[AnyOptions]):
 
     def sizes(self, points: list[Snap]) -> str:
         """Width and height."""
-        (ax, ay), (bx, by) = points[0].point, points[1].point
-        return f"{abs(bx - ax):.3g} m x {abs(by - ay):.3g} m"
+        return width_and_height(points)
 
 
 class WallsDrawing(UprightDrawing[SurfaceOptions]):

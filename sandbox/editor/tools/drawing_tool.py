@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, Literal, cast
 
 from sandbox.editor.document import Document, EditError
+from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.tools.drawing_options import AnyOptions, Options, changed, described
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import ParticleDef
@@ -31,8 +32,10 @@ class Drawing(Generic[AnyOptions]):
     end_hint: ClassVar[str] = ""
     # Whether what is drawn has a size of its own, not that of the gesture.
     is_ready_made: ClassVar[bool] = False
+    # Whether the way of the gesture is shown, before what comes of it.
+    has_outline: ClassVar[bool] = False
     # The option that `adjust` counts up and down.
-    counted: ClassVar[str | None] = None
+    counted: ClassVar[str] = ""
 
     def __init__(self, options: AnyOptions | None = None, reach: float = 0.0) -> None:
         self.options: AnyOptions = cast(AnyOptions, self.defaults) if options is None else options
@@ -44,6 +47,7 @@ class Drawing(Generic[AnyOptions]):
         self._pressed = False
         self._began = False
         self._complete = False
+        self._scene: Scene | None = None
         # Why the gesture could not end, until the next press; and why there is no ghost at the pointer.
         self._fault = ""
         self._ghost_fault = ""
@@ -67,8 +71,8 @@ class Drawing(Generic[AnyOptions]):
 
     @property
     def outline(self) -> list[Point]:
-        """Corners [m] of an outline so far, to be shown as they are; none of other gestures."""
-        return []
+        """Corners [m] of an outline so far and the pointer as the next, shown as they are; none of other gestures."""
+        return [point.point for point in self._so_far()] if self.points and self.has_outline else []
 
     @property
     def hint(self) -> str:
@@ -167,13 +171,14 @@ class Drawing(Generic[AnyOptions]):
 
     def adjust(self, steps: int) -> None:
         """Count the number of parts up or down, within its limits; from the fitting one where none is set."""
-        if self.counted is None:
-            return
-        low, high = described(self.options)[self.counted].limits
-        present = getattr(self.options, self.counted)
-        if present is None:
-            present = self.fitting(self._so_far())
-        self.set_option(self.counted, int(min(max(present + steps, low), high)))
+        if self.counted:
+            low, high = described(self.options)[self.counted].limits
+            self.set_option(self.counted, int(min(max(self.count(self._so_far()) + steps, low), high)))
+
+    def count(self, points: list[Snap]) -> int:
+        """Number of parts: as set, or else what fits."""
+        asked: int | None = getattr(self.options, self.counted)
+        return self.fitting(points) if asked is None else asked
 
     # ---- what each kind of drawing says
 
@@ -198,6 +203,12 @@ class Drawing(Generic[AnyOptions]):
     def fault_of_outline(self) -> str:
         """The fault of the outline so far, in a few words; empty if there is none."""
         return ""
+
+    def _scene_of(self, document: Document) -> Scene:
+        """Where things are in a document; found again where its level is another one."""
+        if self._scene is None or self._scene.level is not document.level:
+            self._scene = make_scene(document.level, self._scene)
+        return self._scene
 
     def _so_far(self) -> list[Snap]:
         """The points of the gesture with the pointer for the one that is still missing."""

@@ -7,7 +7,6 @@ from sandbox.editor.edits.additions import muscles, wave_along
 from sandbox.editor.tools.drawing_options import Options, number_option
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
 from sandbox.editor.tools.snap import Snap
-from sandbox.level.format.quantities import Point
 
 
 @dataclass(frozen=True)
@@ -23,6 +22,7 @@ class WaveDrawing(Drawing[WaveOptions]):
     defaults = WaveOptions()
     start_hint = "Drag along the muscles in the direction of the wave; it takes the selected ones, or all"
     end_hint = "Release where the wave ends"
+    has_outline = True
 
     def __init__(self, options: WaveOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
@@ -32,11 +32,6 @@ class WaveDrawing(Drawing[WaveOptions]):
     def step(self) -> str:
         """Name of the step in the history."""
         return "Phase wave"
-
-    @property
-    def outline(self) -> list[Point]:
-        """The way of the drag."""
-        return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:
         """False: a wave joins nothing."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.terrain import add_zone
-from sandbox.editor.tools.drawing_bodies import rounded
+from sandbox.editor.tools.drawing_bodies import length, rounded, width_and_height
 from sandbox.editor.tools.drawing_options import Options, flag_option
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
 from sandbox.editor.tools.drawing_tool import EditorTool
@@ -94,10 +94,7 @@ class ZoneDrawing(OutlineDrawing[ZoneOptions]):
         """Width and height, radius, or the number of corners."""
         if len(points) > 2:
             return super().sizes(points)
-        (ax, ay), (bx, by) = points[0].point, points[1].point
-        if self.options.circle:
-            return f"radius {math.hypot(bx - ax, by - ay):.3g} m"
-        return f"{abs(bx - ax):.3g} m x {abs(by - ay):.3g} m"
+        return f"radius {length(points):.3g} m" if self.options.circle else width_and_height(points)
 
     def _so_far(self) -> list[Snap]:
         return list(self.points) if self._drags or self._complete else super()._so_far()

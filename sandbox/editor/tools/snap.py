@@ -100,8 +100,7 @@ def _particle(scene: Scene, point: Point, within: float, skip: Selection) -> Sna
     ends = _ends(scene, near)
     slot = next((slot for slot in slots if slot in ends), slots[0])
     name = ends.get(slot) or scene.names(slot)
-    x, y = scene.position[slot].tolist()
-    return Snap((x, y), "end" if slot in ends else "particle", name, f"on {name}")
+    return Snap(scene.place(slot), "end" if slot in ends else "particle", name, f"on {name}")
 
 
 def _ground(scene: Scene, point: Point, within: float, grid: float | None, skip: Selection) -> Snap | None:

@@ -286,8 +286,7 @@ class DriveMarks:
 
 
 def _pixel(camera: Camera, scene: Scene, slot: int) -> Point:
-    x, y = scene.position[slot].tolist()
-    return camera.to_pixels((x, y))
+    return camera.to_pixels(scene.place(slot))
 
 
 def rules_of(scene: Scene, rule: int | None, zones: frozenset[str]) -> list[RuleDef]:
@@ -324,10 +323,9 @@ def _place(scene: Scene, name: str) -> Point | None:
     if box is not None:
         return (box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0
     try:
-        x, y = scene.position[scene.slot(name)].tolist()
+        return scene.place(scene.slot(name))
     except LookupError:
         return None
-    return x, y
 
 
 def _draw_dots(surface: pygame.Surface, start: Point, end: Point, scale: float) -> None:
