@@ -83,6 +83,14 @@ def _check_faults(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]
     yield from _window_faults(path, check)
 
 
+def bound_faults(path: str, least: float | None, most: float | None, is_needed: bool = True) -> Iterator[Fault]:
+    """Faults of the bounds of what is asked for."""
+    if least is None and most is None and is_needed:
+        yield path, "needs a bound: at_most, at_least or both"
+    elif least is not None and most is not None and least > most:
+        yield f"{path}.at_least", f"{shown(least)} is above at_most, {shown(most)}"
+
+
 class MetricAsked(Protocol):
     """A check or a question of a rule, which asks for a metric."""
 
@@ -94,10 +102,7 @@ class MetricAsked(Protocol):
 def metric_faults(path: str, asked: MetricAsked, subjects: tuple[str, ...], layout: Layout) -> Iterator[Fault]:
     """Faults of the bounds of a metric, and of what it is measured of: of the fields `subjects`."""
     measured = METRICS[asked.metric]
-    if asked.at_most is None and asked.at_least is None and measured.at_least is None:
-        yield path, "needs a bound: at_most, at_least or both"
-    elif asked.at_most is not None and asked.at_least is not None and asked.at_least > asked.at_most:
-        yield f"{path}.at_least", f"{shown(asked.at_least)} is above at_most, {shown(asked.at_most)}"
+    yield from bound_faults(path, asked.at_least, asked.at_most, measured.at_least is None)
     for field in subjects:
         name, where = getattr(asked, field), f"{path}.{field}"
         as_in_check = "box" if field == "zone" else field

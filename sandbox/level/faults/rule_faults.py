@@ -6,7 +6,7 @@ from typing import assert_never
 
 from sandbox.level.checks import SUBJECTS
 from sandbox.level.document.model import Level
-from sandbox.level.faults.reference_faults import metric_faults, subject_faults
+from sandbox.level.faults.reference_faults import bound_faults, metric_faults, subject_faults
 from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.limits import QUESTION_LIMIT, RULE_LIMIT
 from sandbox.level.format.quantities import replaced
@@ -187,10 +187,7 @@ def _breaks_faults(path: str, question: QuestionDef, names: _RuleNames) -> Itera
 
 def _counter_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     yield from names.find("counter", f"{path}.counter", question.counter or "")
-    if question.at_most is None and question.at_least is None:
-        yield path, "needs a bound: at_most, at_least or both"
-    elif question.at_most is not None and question.at_least is not None and question.at_least > question.at_most:
-        yield f"{path}.at_least", f"{shown(question.at_least)} is above at_most, {shown(question.at_most)}"
+    yield from bound_faults(path, question.at_least, question.at_most)
 
 
 _ASKED: dict[Asks, Callable[[str, QuestionDef, _RuleNames], Iterator[Fault]]] = {

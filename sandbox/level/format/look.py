@@ -32,6 +32,10 @@ SkinName = Annotated[Line, Field(json_schema_extra={"examples": [*SKINS]})]
 LineName = Annotated[Line, Field(json_schema_extra={"examples": [*LINES]})]
 BallName = Annotated[Line, Field(json_schema_extra={"examples": [*BALLS]})]
 GroundName = Annotated[Line, Field(json_schema_extra={"examples": [*GROUNDS]})]
+OwnColour = Annotated[
+    ColourName | None,
+    Field(description='Colour: a name of the palette, or "#RRGGBB".', json_schema_extra=empty("automatic")),
+]
 
 
 def colour_of(name: str) -> int:
@@ -85,11 +89,7 @@ class BodyLook(Description):
         description="What its springs are drawn as: a name of a line.",
         json_schema_extra=empty("automatic"),
     )
-    colour: ColourName | None = Field(
-        default=None,
-        description='Colour: a name of the palette, or "#RRGGBB".',
-        json_schema_extra=empty("automatic"),
-    )
+    colour: OwnColour = None
     face: bool | None = Field(default=None, description="Whether it has a face.", json_schema_extra=empty("automatic"))
     width: float = Field(
         default=1.0, ge=0.1, le=10.0, description="Width of its lines, as a multiple of the usual width."
@@ -110,21 +110,13 @@ class ParticleLook(Description):
     ball: BallName | None = Field(
         default=None, description="What it is drawn as: a name of a ball.", json_schema_extra=empty("automatic")
     )
-    colour: ColourName | None = Field(
-        default=None,
-        description='Colour: a name of the palette, or "#RRGGBB".',
-        json_schema_extra=empty("automatic"),
-    )
+    colour: OwnColour = None
 
 
 class ZoneLook(Description):
     """How a zone looks."""
 
-    colour: ColourName | None = Field(
-        default=None,
-        description='Colour: a name of the palette, or "#RRGGBB".',
-        json_schema_extra=empty("automatic"),
-    )
+    colour: OwnColour = None
 
 
 def look_when_added(number: int, radius: float) -> ParticleLook:
