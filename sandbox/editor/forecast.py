@@ -5,7 +5,6 @@ has passed a peak, where it is near an equilibrium of most of its motion, and is
 and settings make the run, so that where it ends is where playing would end.
 """
 
-import time
 from collections import deque
 from collections.abc import Generator, Iterator, Sequence
 
@@ -18,6 +17,7 @@ from sandbox.editor.lint.finding import called, falling_particles
 from sandbox.editor.scene import Scene, driven_items, make_scene
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
+from sandbox.level.format.slices import work_for
 from sandbox.level.plan.run_rules import run_rules
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -281,10 +281,3 @@ def _middle(places: Floats, items: Sequence[int]) -> Floats | None:
     chosen = places[:, items]
     known = chosen[:, ~np.isnan(chosen[0, :, 0])]
     return known.mean(axis=1) if known.shape[1] else None
-
-
-def work_for(work: Iterator[None], seconds: float) -> bool:
-    """Go on with some work for about that long [s], at least one step of it; whether it is done."""
-    # The clock says when to pause, never what comes out.
-    end = time.perf_counter() + seconds
-    return all(time.perf_counter() < end for _ in work)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.forecast import Trail, work_for
+from sandbox.editor.forecast import Trail
 from sandbox.editor.items import chosen_bodies, chosen_springs
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.material_properties import material_sections
@@ -14,6 +14,7 @@ from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import significant
+from sandbox.level.format.slices import work_for
 from sandbox.session.check_run import checks_as_they_end
 
 # Values that are tried at a time, at most.

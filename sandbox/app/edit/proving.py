@@ -7,9 +7,10 @@ from pathlib import Path
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, Colour
-from sandbox.editor.forecast import LARGEST, work_for
+from sandbox.editor.forecast import LARGEST
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.slices import work_for
 from sandbox.session.level_edits import runs_alike
 from sandbox.session.looking import Looking
 from sandbox.session.outcome import outcome_text

@@ -22,9 +22,9 @@ from sandbox.app.share.page import so_far
 from sandbox.app.sound.waves import STAR_RISE, STAR_STEP
 from sandbox.app.widgets.dialogs import Choice
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.forecast import work_for
 from sandbox.editor.storage.best_runs import Result, best_recording, best_result
 from sandbox.level.document.model import ZoneDef
+from sandbox.level.format.slices import work_for
 from sandbox.level.reading.files import file_of, shipped_folder
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot

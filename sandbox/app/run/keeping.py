@@ -9,6 +9,7 @@ from sandbox.editor.storage.best_runs import Result, keep_result, record_best
 from sandbox.editor.storage.scene_shelf import SceneShelf
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.slices import goes_on, telling
 from sandbox.session.commands import CommandError
 from sandbox.session.replay.recording import Replay
 from sandbox.session.scene import RunScene
@@ -122,13 +123,9 @@ class BestKeeping:
 
 def _kept(path: Path, run: Replay, say: Callable[[str], None]) -> Iterator[bool]:
     """Record a run as a solution, a slice at a time."""
-    slices = keep_solution(path, run.script, run.ticks)
     try:
-        while True:
-            next(slices)
-            yield True
-    except StopIteration as end:
-        say(f"Kept as its solution: {end.value.text}." if end.value.passed else f"Not kept: {end.value.text}.")
+        verdict = yield from telling(keep_solution(path, run.script, run.ticks), goes_on)
+        say(f"Kept as its solution: {verdict.text}." if verdict.passed else f"Not kept: {verdict.text}.")
     except (LevelError, CommandError) as error:
         say(f"Not kept: {error.faults[0]}.")
     except OSError as error:
