@@ -16,7 +16,7 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, LINE, MUTED, SURFACE, TEXT, mixed
 from sandbox.app.panel.coefficient_pad import CoefficientPad
-from sandbox.app.panel.panel_rows import INSIDE, MARGIN, PANEL_WIDTH, SidePanel
+from sandbox.app.panel.panel_rows import PANEL_WIDTH, PanelRows, SidePanel
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.button import Choice
@@ -141,36 +141,32 @@ class LessonPanel:
         self._exploded_at: int | None = None
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
-        self._back, self._y = self.area.content, 14.0
+        self._rows = PanelRows(ui, self.area.content)
         self._build(restart)
-        self.area.set_height(ui.px(self._y + 8))
+        self.area.set_height(ui.px(self._rows.y + 8))
         self.refresh()
 
     def _build(self, restart: Callable[[], None]) -> None:
-        ui, back = self._ui, self._back
-        TextBlock(ui, self._next(24, 2), "Stiffer, until it explodes", back, 15.0, TEXT, is_bold=True)
-        self.text = TextBlock(ui, self._next(WORDS_HEIGHT, 6), "", back, 12.5, TEXT)
-        place = self._next(ROW + 2, 10)
+        ui, row, back = self._ui, self._rows.row, self._rows.back
+        TextBlock(ui, row(24, 2), "Stiffer, until it explodes", back, 15.0, TEXT, is_bold=True)
+        self.text = TextBlock(ui, row(WORDS_HEIGHT, 6), "", back, 12.5, TEXT)
+        place = row(ROW + 2, 10)
         half = (place.width - ui.px(8)) // 2
         first, second = place.copy(), place.move(half + ui.px(8), 0)
         first.width = second.width = half
         self.stiffer = ui.button(first, "Stiffer × 2", lambda: self._stiffen(1), back, style="primary")
         self.softer = ui.button(second, "Softer ÷ 2", lambda: self._stiffen(-1), back)
-        self.hooke = LimitGauge(ui, self._next(GAUGE, 4), FIRST_K / 2, FIRST_K * 2.0**MOST_DOUBLINGS, back)
-        self.article = LimitGauge(ui, self._next(GAUGE, 8), FIRST_CS / 2, FIRST_CS * 2.0**MOST_DOUBLINGS, back)
+        self.hooke = LimitGauge(ui, row(GAUGE, 4), FIRST_K / 2, FIRST_K * 2.0**MOST_DOUBLINGS, back)
+        self.article = LimitGauge(ui, row(GAUGE, 8), FIRST_CS / 2, FIRST_CS * 2.0**MOST_DOUBLINGS, back)
         self.masses = self._choice("Weight", [(f"{mass:g}", f"{mass:g} kg") for mass in MASSES], self._set_mass)
         self.rates = self._choice("Ticks a second", [(str(rate), str(rate)) for rate in RATES], self._set_rate)
         self.springs = self._choice("Springs", [("1", "One"), ("6", "Six in a row")], self._set_springs)
-        self.restart_button = ui.button(self._next(ROW, 4), "Again", restart, back, tip="Both from the beginning  [R]")
-
-    def _next(self, height: float, gap: float) -> pygame.Rect:
-        place = self._ui.rect(MARGIN, self._y, INSIDE, height)
-        self._y += height + gap
-        return place
+        self.restart_button = ui.button(row(ROW, 4), "Again", restart, back, tip="Both from the beginning  [R]")
 
     def _choice(self, title: str, options: list[tuple[str, str]], choose: Callable[[str], None]) -> Choice:
-        self._ui.label(self._next(18, 1), title, self._back, "muted")
-        return self._ui.choice(self._next(26, 8), [(value, text, "") for value, text in options], choose, self._back)
+        rows = self._rows
+        self._ui.label(rows.row(18, 1), title, rows.back, "muted")
+        return self._ui.choice(rows.row(26, 8), [(value, text, "") for value, text in options], choose, rows.back)
 
     # Changing.
 

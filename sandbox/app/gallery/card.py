@@ -15,6 +15,7 @@ from sandbox.app.draw.picture import crop_of
 from sandbox.app.draw.picture_cache import LINE_SCALE, PARTICLES, SECONDS, SIZE
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.widgets.button import painted_stars
+from sandbox.app.widgets.styles import put_rim
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pressable
@@ -108,11 +109,7 @@ class Card(Pressable):
         else:
             self._paint_whole(card, lines)
         rim, width = (ACCENT, 2.0) if self.is_pointed_at else (LINE, 1.2)
-        pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(width)), border_radius=corner)
-        # The picture has the corners of the card.
-        mask = pygame.Surface(size, pygame.SRCALPHA)
-        pygame.draw.rect(mask, (255, 255, 255), mask.get_rect(), border_radius=corner)
-        card.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MIN)
+        put_rim(card, rim, max(1, ui.px(width)), corner)
         return card
 
     def _paint_row(self, card: pygame.Surface) -> None:

@@ -1,10 +1,9 @@
 """Cards of scenes and recordings: what each is of, when it was kept, what was done in it, and a picture of its end."""
 
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
 
 import pygame
 
@@ -15,6 +14,7 @@ from sandbox.app.draw.picture_cache import LINE_SCALE, SIZE, find_picture, keep_
 from sandbox.app.gallery.card import Card
 from sandbox.app.play.run_actions import level_name
 from sandbox.level.document.model import Level
+from sandbox.level.format.slices import goes_on, telling
 from sandbox.level.plan.surfaces import terrain_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.replay.reader import read_in_slices
@@ -24,7 +24,6 @@ from sandbox.session.solution import known_solution
 
 # Bytes at the end of a scene's file, where the hash of its state is, which a picture goes by.
 END_BYTES = 256
-Read = TypeVar("Read")
 
 
 def level_of_scene(path: Path) -> str:
@@ -52,7 +51,7 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
     text = f"{level}, as it stood {when}: {about.actions}."
     card.show_texts(f"{level}, {when}, {about.actions}" if card.is_small else name, text, ("scene",))
     yield True
-    if not _show_kept(card, path, end):
+    if not show_kept(card, path, end):
         try:
             scene, _ = read_scene(path)
         except ReplayError as error:
@@ -65,7 +64,7 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
 def fill_replay(card: Card, path: Path) -> Iterator[bool]:
     """Read a recording for its card and draw it, a slice at a time."""
     try:
-        replay = yield from _read_on(read_in_slices(path, partial=True))
+        replay = yield from telling(read_in_slices(path, partial=True), goes_on)
     except ReplayError as error:
         card.show_fault(error.faults[0])
         return
@@ -76,7 +75,7 @@ def fill_replay(card: Card, path: Path) -> Iterator[bool]:
     size = path.stat().st_size / 1024
     card.show_texts(card.name, f"{replay.ticks:,} ticks, {deeds}, {size:,.0f} KiB", replay.level.tags)
     content = f"{path.name} {replay.hashes[-1].whole}".encode()
-    if not _show_kept(card, path, content):
+    if not show_kept(card, path, content):
         try:
             state = replay.state(max(replay.states))
         except (ReplayError, ValueError):
@@ -87,19 +86,8 @@ def fill_replay(card: Card, path: Path) -> Iterator[bool]:
 
 def fill_solved(card: Card, path: Path, level: Level) -> Iterator[bool]:
     """Read the solution beside a level's file, a slice at a time, and say on its card how it wins the level."""
-    known = yield from _read_on(known_solution(level, path))
+    known = yield from telling(known_solution(level, path), goes_on)
     card.solved = "" if known is None else known[1]
-
-
-def _read_on(reading: Generator[None, None, Read]) -> Generator[bool, None, Read]:
-    """Read a recording in slices of which each says that it goes on."""
-    while True:
-        try:
-            next(reading)
-        except StopIteration as end:
-            read: Read = end.value
-            return read
-        yield True
 
 
 def date_of(path: Path) -> str:
@@ -107,7 +95,7 @@ def date_of(path: Path) -> str:
     return time.strftime("%d %b %Y, %H:%M", time.localtime(path.stat().st_mtime))
 
 
-def _show_kept(card: Card, path: Path, content: bytes) -> bool:
+def show_kept(card: Card, path: Path, content: bytes) -> bool:
     """Show the picture that is kept of a content, if there is one; whether there is."""
     picture = find_picture(path, picture_key(content), card.picture_size, shown_theme())
     if picture is not None:

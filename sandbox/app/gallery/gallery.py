@@ -25,7 +25,7 @@ from sandbox.app.draw.picture_cache import (
     picture_key,
 )
 from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, Preview, draw_shadow
-from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene, fill_solved, level_of_scene
+from sandbox.app.gallery.filling import date_of, fill_replay, fill_scene, fill_solved, level_of_scene, show_kept
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
 from sandbox.app.play.score import time_text
 from sandbox.app.widgets.button import Button
@@ -187,9 +187,7 @@ class Gallery:
         card = self._add_card(self.groups[1], WIN, text, partial(self._show_section, group.title))
         self.groups[1].cards.insert(WIN_PLACE, self.groups[1].cards.pop())
         card.line, card.tags = group.line, ("goal", "puzzle", "win")
-        picture = find_picture(first, picture_key(first.read_bytes()), card.picture_size, shown_theme())
-        if picture is not None:
-            card.show_picture(picture)
+        show_kept(card, first, first.read_bytes())
 
     def _add_lessons(self) -> None:
         group = self._group("Lessons", "Try it, and see why.")
@@ -201,9 +199,7 @@ class Gallery:
         card = self._add_card(group, "Melt the jellies", text, self._app.start_melt)
         card.line, card.tags = "One button: melt, and whole again", ("lesson", "solver", "article", "jelly")
         first = shipped_folder("levels") / f"{FIRST}.json"
-        picture = find_picture(first, picture_key(first.read_bytes()), card.picture_size, shown_theme())
-        if picture is not None:
-            card.show_picture(picture)
+        show_kept(card, first, first.read_bytes())
         path = shipped_folder("levels") / f"{COMPARED}.json"
         if path.is_file():
             text = (
@@ -268,9 +264,8 @@ class Gallery:
 
     def _fill(self, card: Card, path: Path, content: bytes, is_shipped: bool) -> Iterator[bool]:
         key, size, theme = picture_key(content), card.picture_size, shown_theme()
-        picture = find_picture(path, key, size, theme)
-        if picture is not None:
-            card.show_picture(picture)
+        has_picture = show_kept(card, path, content)
+        if has_picture:
             yield True
             if is_shipped and RULES not in content:
                 return
@@ -289,7 +284,7 @@ class Gallery:
             card.show_won(result.stars, time_text(result.seconds))
         if level.rules and not card.is_small:
             yield from fill_solved(card, path, level)
-        if picture is not None:
+        if has_picture:
             return
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)
         card.show_picture(pygame.transform.smoothscale(picture, size))

@@ -26,6 +26,7 @@ from sandbox.app.draw.picture_cache import draw_in_slices, find_picture, keep_fo
 from sandbox.app.draw.picture_cache import picture_key as key_of_level
 from sandbox.app.widgets.dialogs import MARGIN, Dialog
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
+from sandbox.app.widgets.styles import put_rim
 from sandbox.app.widgets.texts import TextBlock, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import ENTER_KEYS, Widget
@@ -147,11 +148,7 @@ class PartCard(Widget):
             card.blit(text, text.get_rect(midleft=(ui.px(8), middle)))
         is_lit = self.is_taken or self.hovered or self.focused
         rim, width = (ACCENT, 2.0 if self.is_taken else 1.2) if is_lit else (LINE, 1.2)
-        pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(width)), border_radius=corner)
-        # Pictures have corners of their own.
-        mask = pygame.Surface(size, pygame.SRCALPHA)
-        pygame.draw.rect(mask, (255, 255, 255), mask.get_rect(), border_radius=corner)
-        card.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MIN)
+        put_rim(card, rim, max(1, ui.px(width)), corner)
         return card
 
     def _paint_fault(self, card: pygame.Surface, place: pygame.Rect) -> None:

@@ -11,7 +11,7 @@ from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MUTED, TEXT, C
 from sandbox.app.widgets.scroll import BAR_WIDTH, WHEEL_STEP, ScrollBar
 from sandbox.app.widgets.texts import shortened, wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
+from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget, WindowLayout
 
 # Sizes in layout units.
 LINE_HEIGHT = 17.0
@@ -38,6 +38,15 @@ class Row:
     indent: int = 0
     lines: int = 0
     keeps_end: bool = False
+
+    def paint_swatch(self, ui: WindowLayout, surface: pygame.Surface, left: int, top: int) -> int:
+        """Paint the spot of colour in the first line; where what follows it begins."""
+        if self.swatch is None:
+            return left
+        side = ui.px(SWATCH)
+        place = pygame.Rect(left, top + (ui.px(LINE_HEIGHT) - side) // 2, side, side)
+        pygame.draw.rect(surface, self.swatch, place, border_radius=ui.px(3))
+        return left + side + ui.px(8)
 
 
 class RowList(Widget):
@@ -221,11 +230,7 @@ class RowList(Widget):
         if index == self._cursor and not is_chosen:
             pygame.draw.rect(surface, ACCENT, inner, 1, border_radius=ui.px(5))
         left, line, y = ui.px(INSET) + row.indent * ui.px(INDENT), ui.px(LINE_HEIGHT), top + ui.px(PADDING)
-        if row.swatch is not None:
-            swatch = ui.px(SWATCH)
-            at = pygame.Rect(left, y + (line - swatch) // 2, swatch, swatch)
-            pygame.draw.rect(surface, row.swatch, at, border_radius=ui.px(3))
-            left += swatch + ui.px(8)
+        left = row.paint_swatch(ui, surface, left, y)
         if row.aside:
             picture = ui.font(DETAIL_SIZE).render(row.aside, True, MUTED)
             surface.blit(picture, (place.right - ui.px(INSET) - picture.get_width(), y + ui.px(1)))

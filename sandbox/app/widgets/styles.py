@@ -149,6 +149,14 @@ def _corners(side: int, back: Colour, line: Colour, radius: int, rim: int) -> py
     return pygame.transform.smoothscale(large, (side, side))
 
 
+def put_rim(card: pygame.Surface, colour: Colour, width: int, radius: int) -> None:
+    """Draw the rim of a card, and cut off what was painted beyond its round corners."""
+    pygame.draw.rect(card, colour, card.get_rect(), width, border_radius=radius)
+    mask = pygame.Surface(card.get_size(), pygame.SRCALPHA)
+    pygame.draw.rect(mask, (255, 255, 255), mask.get_rect(), border_radius=radius)
+    card.blit(mask, (0, 0), special_flags=pygame.BLEND_RGBA_MIN)
+
+
 class Plate(Widget):
     """A panel in one of the styles."""
 

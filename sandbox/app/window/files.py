@@ -227,34 +227,27 @@ class FileActions:
 
     def toggle_recording(self) -> None:
         """Start recording the run, its beginning included, or stop and ask for a name."""
-        play = self.app.play
-        if play is None:
-            return
-        if play.playback.session.recording is not None:
-            self._stop_and_name()
-            return
-        path = self._write(play.playback.record_to)
+        path = self._write(Playback.record_to)
         # A disk may be full before what was until now is written: why it ended is said then.
-        if path is not None and play.playback.session.recording is not None:
+        if path is not None and self.app.play is not None and self.app.play.playback.session.recording is not None:
             self.app.say(_recording(path))
 
     def save_run(self) -> None:
         """Save the run so far as a recording, under a name that is asked for."""
-        play = self.app.play
-        if play is None:
-            return
-        if play.playback.session.recording is not None:
-            self._stop_and_name()
-            return
-        path = self._write(play.playback.save_to)
+        path = self._write(Playback.save_to)
         if path is not None:
             self._name(path)
 
-    def _write(self, write: Callable[[Path], Path | None]) -> Path | None:
-        """Write a new file for the run's recording; its path, None where that cannot be."""
-        assert self.app.play is not None
+    def _write(self, write: Callable[[Playback, Path], Path | None]) -> Path | None:
+        """Write a new file for the run's recording, or end the present one; its path, None where that cannot be."""
+        if self.app.play is None:
+            return None
+        playback = self.app.play.playback
+        if playback.session.recording is not None:
+            self._stop_and_name()
+            return None
         try:
-            return write(free_path(recordings_folder(), plain_name(self.app.play.playback.level.name)))
+            return write(playback, free_path(recordings_folder(), plain_name(playback.level.name)))
         except OSError as error:
             where = f" to {error.filename}" if error.filename else ""
             self.app.say(f"The recording cannot be written{where}: {error.strerror or error}.")

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import NamedTuple, cast
 
 import numpy as np
 import pygame
@@ -38,12 +39,12 @@ from sandbox.app.draw.renderer import (
 )
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.things.drawables import Drawables
-from sandbox.app.draw.things.level_slots import Frame, LevelSlots, level_slots_of
+from sandbox.app.draw.things.level_slots import Frame, LevelSlots, Seen, level_slots_of
 from sandbox.app.edit.canvas.edited_shapes import Areas, Ground, paint_ground, paint_walls, paint_zones
-from sandbox.editor.forecast import work_for
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.limits import BODY_RADIUS
+from sandbox.level.format.slices import work_for
 
 # Distance of the points that the pointer snaps to, at least [pixels at scale 1].
 SNAP_STEP = 16.0
@@ -67,7 +68,6 @@ SLICE = 0.006
 # Particles that would be smaller than this [pixels] are left out of the plain picture.
 SMALLEST_PLAIN = 1.0
 Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 # Scenes of more particles and springs than this show their springs alone: each edit makes all of it again.
 MOST_FILLED = 4_000
 # How much of it shows, of 255.
@@ -370,23 +370,6 @@ def hanging_springs(scene: Scene, particles: Mask) -> Mask:
     return held[scene.particle_a] | held[scene.particle_b]
 
 
-@dataclass(eq=False)
-class _Filled:
-    """A scene as drawing reads a world's state."""
-
-    position: Floats
-    velocity: Floats
-    mass: Floats
-    inverse_mass: Floats
-    radius: Floats
-    particle_active: Mask
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    rest_length: Floats
-    stiffness: Floats
-    spring_active: Mask
-
-
 class FillPreview:
     """Draws the bodies of a scene as play will show them."""
 
@@ -421,17 +404,19 @@ class FillPreview:
         return True
 
 
-def _filled_of(scene: Scene, particles: Mask, springs: Mask) -> _Filled:
-    return _Filled(
-        scene.position,
-        np.zeros_like(scene.position),
-        scene.mass,
-        np.where(scene.pinned, 0.0, 1.0),
-        scene.radius,
-        particles,
-        scene.particle_a.astype(np.int32),
-        scene.particle_b.astype(np.int32),
-        scene.rest_length,
-        np.zeros_like(scene.rest_length),
-        springs,
+def _filled_of(scene: Scene, particles: Mask, springs: Mask) -> Seen:
+    """A scene as drawing reads a world's state."""
+    state = SimpleNamespace(
+        position=scene.position,
+        velocity=np.zeros_like(scene.position),
+        mass=scene.mass,
+        inverse_mass=np.where(scene.pinned, 0.0, 1.0),
+        radius=scene.radius,
+        particle_active=particles,
+        particle_a=scene.particle_a.astype(np.int32),
+        particle_b=scene.particle_b.astype(np.int32),
+        rest_length=scene.rest_length,
+        stiffness=np.zeros_like(scene.rest_length),
+        spring_active=springs,
     )
+    return cast(Seen, state)

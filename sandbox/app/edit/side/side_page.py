@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.draw.colours import MUTED
 from sandbox.app.widgets.picker import Picker
 from sandbox.app.widgets.property_widgets import GAP, ROW
-from sandbox.app.widgets.rows import DETAIL_SIZE, INSET, LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
+from sandbox.app.widgets.rows import DETAIL_SIZE, INSET, LINE_HEIGHT, PADDING, TEXT_SIZE, Row, RowList
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
@@ -76,11 +76,7 @@ class ChosenRow(Picker):
                 surface.blit(ui.font(DETAIL_SIZE).render(text, True, MUTED), (left, y))
                 y += line
             return surface
-        if row.swatch is not None:
-            swatch = ui.px(SWATCH)
-            at = pygame.Rect(left, y + (line - swatch) // 2, swatch, swatch)
-            pygame.draw.rect(surface, row.swatch, at, border_radius=ui.px(3))
-            left += swatch + ui.px(8)
+        left = row.paint_swatch(ui, surface, left, y)
         widest = size[0] - left - ui.px(24)
         for text, height, colour in ((row.text, TEXT_SIZE, row.colour), (row.detail, DETAIL_SIZE, MUTED)):
             (shown,) = wrapped(text, ui.font(height), widest, 1)
