@@ -23,11 +23,8 @@ class GirderEditing(BodyEditing[GirderDef]):
 
     tools: ClassVar = (EditorTool("girder", "G", "Girder", GirderDrawing),)
     formless = frozenset({"particle_mass", "pin"})
-
-    @property
-    def noun(self) -> str:
-        """Slanting girder: upright and level ones can be stretched."""
-        return "slanting girder"
+    # Upright and level ones can be stretched.
+    noun = "slanting girder"
 
     def can_stretch(self) -> bool:
         """Whether the girder can be stretched: it lies along an axis."""

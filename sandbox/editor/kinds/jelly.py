@@ -74,11 +74,7 @@ class JellyDrawing(BodyDrawing[JellyOptions]):
     defaults = JellyOptions()
     kind = "jelly"
     counted = "cells"
-
-    @property
-    def step(self) -> str:
-        """Name of the step in the history, whatever shape was drawn."""
-        return "Draw jelly"
+    step = "Draw jelly"
 
     def fitting(self, points: list[Snap]) -> int:
         """The number of cells across that is usual."""
@@ -157,11 +153,7 @@ class JellyEditing(BodyEditing[JellyDef]):
         EditorTool("polygon", "Y", "Jelly: freehand or corner by corner", PolygonDrawing, word="jelly shape"),
     )
     formless = frozenset({"particle_mass", "area"})
-
-    @property
-    def noun(self) -> str:
-        """The name in messages of a jelly that cannot be stretched; square ones can be."""
-        return "jelly that is round or turned"
+    noun = "jelly that is round or turned"
 
     def can_stretch(self) -> bool:
         """Whether the jelly can be stretched: its sides lie along the axes, and it is not round."""

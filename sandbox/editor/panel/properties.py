@@ -182,11 +182,11 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
         about = _with_its_start(about, parts)
     if about.kind == "extras":
         return extras_properties(about, [part.extras for part in parts], partial(_change_extras, selection))
+    return [Property(name, about, value, partial(_set_field, selection, name))]
 
-    def write(document: Document, value: Any) -> Document:
-        return set_field(document, selection, name, value)
 
-    return [Property(name, about, value, write)]
+def _set_field(selection: Selection, name: str, document: Document, value: Any) -> Document:
+    return set_field(document, selection, name, value)
 
 
 def _with_its_start(about: FieldInfo, parts: Sequence[Definition]) -> FieldInfo:
@@ -273,11 +273,7 @@ def _zone_properties(selection: Selection, zone: ZoneDef) -> list[Property]:
     }  # fmt: skip
     pick: Pick = "box" if name == "box" else ""
     about = replace(fields_of(ZoneDef)[name], title=titles[name], tooltip=tips[name], optional=False, pick=pick)
-
-    def write(document: Document, value: Any) -> Document:
-        return set_field(document, selection, name, value)
-
-    return [Property(name, about, getattr(zone, name), write)]
+    return [Property(name, about, getattr(zone, name), partial(_set_field, selection, name))]
 
 
 # The shape of a jelly.

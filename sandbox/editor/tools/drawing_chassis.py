@@ -46,10 +46,8 @@ class ChassisDrawing(Drawing[ChassisOptions]):
     defaults = ChassisOptions()
     start_hint = "Drag from the rear axle to the front one, or click both; then put wheels on them"
     end_hint = "Click or release at the other axle"
-
-    def joins(self, index: int) -> bool:
-        """False: a chassis comes with axles of its own."""
-        return False
+    # It comes with axles of its own.
+    joins_particles = False
 
     def placed(self, document: Document, points: list[Snap]) -> Document:
         """The document with the frame, the axles and the springs between them. Raises EditError."""

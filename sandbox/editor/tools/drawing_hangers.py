@@ -41,6 +41,7 @@ class HangersDrawing(Drawing[HangersOptions]):
     """Springs from one row of particles to another, between where the drag begins and where it ends."""
 
     defaults = HangersOptions()
+    step = "Draw hangers"
     start_hint = f"Press {WHERE}, where the first hanger goes, and drag to the other one, where the last ends"
     end_hint = f"End {WHERE} beside it"
     counted = "count"
@@ -48,11 +49,6 @@ class HangersDrawing(Drawing[HangersOptions]):
     def __init__(self, options: HangersOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
         self._most = self._made = 1
-
-    @property
-    def step(self) -> str:
-        """Name of the step in the history."""
-        return "Draw hangers"
 
     def ghost(self, document: Document) -> Document | None:
         """The hangers, with stand-ins of the particles that they join."""

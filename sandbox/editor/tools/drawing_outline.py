@@ -23,14 +23,12 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
     end_hint = "Click the next corner; the first one, a double click or Enter closes it, Backspace takes one back"
     fewest = 3
     has_outline = True
+    # Corners have no particles of their own.
+    joins_particles = False
 
     def __init__(self, options: AnyOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
         self.freehand = False
-
-    def joins(self, index: int) -> bool:
-        """False: corners have no particles of their own."""
-        return False
 
     def down(self, snap: Snap) -> None:
         """Set a corner, or end the outline by a click on its first or last one."""

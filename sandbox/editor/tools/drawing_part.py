@@ -24,6 +24,8 @@ class PartDrawing(Drawing[PartOptions]):
     defaults = PartOptions()
     needs = 1
     is_ready_made = True
+    # It lies beside what it is put on.
+    joins_particles = False
 
     @property
     def hint(self) -> str:
@@ -41,10 +43,6 @@ class PartDrawing(Drawing[PartOptions]):
         """Take another part in hand."""
         self.cancel()
         self.options = replace(self.options, part=part)
-
-    def joins(self, index: int) -> bool:
-        """False: a part lies beside what it is put on."""
-        return False
 
     def ghost(self, document: Document) -> Document | None:
         """The part where a click would put it; None where none is chosen."""

@@ -93,15 +93,11 @@ class PinDrawing(Drawing[PinOptions]):
 
     defaults = PinOptions()
     needs = 1
+    step = "Pin or unpin"
 
     def __init__(self, options: PinOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
         self._offer = PIN_HINT
-
-    @property
-    def step(self) -> str:
-        """Name of the step in the history."""
-        return "Pin or unpin"
 
     @property
     def hint(self) -> str:

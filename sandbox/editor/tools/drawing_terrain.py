@@ -91,10 +91,7 @@ class UprightDrawing(Drawing[AnyOptions]):
     anchor = None
     end_hint = "Click or release at the opposite corner"
     noun: ClassVar[str] = ""
-
-    def joins(self, index: int) -> bool:
-        """False: such a box joins nothing."""
-        return False
+    joins_particles = False
 
     def box(self, points: list[Snap]) -> tuple[float, float, float, float]:
         """Left, bottom, right, top [m]. Raises EditError for a box without a size."""

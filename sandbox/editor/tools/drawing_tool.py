@@ -34,6 +34,8 @@ class Drawing(Generic[AnyOptions]):
     is_ready_made: ClassVar[bool] = False
     # Whether the way of the gesture is shown, before what comes of it.
     has_outline: ClassVar[bool] = False
+    # Whether it becomes one with the particles that its points are on.
+    joins_particles: ClassVar[bool] = True
     # The option that `adjust` counts up and down.
     counted: ClassVar[str] = ""
 
@@ -196,7 +198,7 @@ class Drawing(Generic[AnyOptions]):
 
     def joins(self, index: int) -> bool:
         """Whether the particle that the point of that index is on becomes one with what is drawn."""
-        return True
+        return self.joins_particles
 
     # ---- between them
 

@@ -20,22 +20,15 @@ class WaveDrawing(Drawing[WaveOptions]):
     """Phases from places along a drag, of the selected muscles or of all."""
 
     defaults = WaveOptions()
+    step = "Phase wave"
     start_hint = "Drag along the muscles in the direction of the wave; it takes the selected ones, or all"
     end_hint = "Release where the wave ends"
     has_outline = True
+    joins_particles = False
 
     def __init__(self, options: WaveOptions | None = None, reach: float = 0.0) -> None:
         super().__init__(options, reach)
         self._count = 0
-
-    @property
-    def step(self) -> str:
-        """Name of the step in the history."""
-        return "Phase wave"
-
-    def joins(self, index: int) -> bool:
-        """False: a wave joins nothing."""
-        return False
 
     def ghost(self, document: Document) -> Document | None:
         """None: nothing is added; `hint` says why it cannot be done."""
