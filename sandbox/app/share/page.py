@@ -1,7 +1,6 @@
 """SharePage: what of the last seconds is kept, and as what; how far it is; or a link to the run, on the clipboard."""
 
-import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
 import pygame
@@ -18,6 +17,7 @@ from sandbox.app.widgets.slider import RangeSlider
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
+from sandbox.level.format.slices import telling, work_for
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands.records import script_of
 from sandbox.session.replay.link import run_of
@@ -308,7 +308,7 @@ class LinkCopying:
 
     def __init__(self, app: Application) -> None:
         self._app = app
-        self._slices: Generator[float, None, str] | None = None
+        self._work: Iterator[None] | None = None
         self._done = 0.0
 
     def begin(self) -> None:
@@ -317,29 +317,30 @@ class LinkCopying:
         if play is None:
             self._app.say("There is nothing to share yet: play a level first.")
         else:
-            self._slices = link_to(so_far(play.playback.session), self._app.chosen["link_site"], 0)
+            self._work = self._make(link_to(so_far(play.playback.session), self._app.chosen["link_site"], 0))
 
     def status(self) -> list[tuple[str, Colour]]:
         """The status line's words about the work."""
-        return [] if self._slices is None else [(f"making the link: {100.0 * self._done:.0f} %", ACCENT)]
+        return [] if self._work is None else [(f"making the link: {100.0 * self._done:.0f} %", ACCENT)]
 
     @property
     def moves(self) -> bool:
         """Whether a link is being made."""
-        return self._slices is not None
+        return self._work is not None
 
     def update(self) -> None:
         """Go on with the work for a part of a frame."""
-        end = time.perf_counter() + _BUDGET
-        while self._slices is not None and time.perf_counter() < end:
-            try:
-                self._done = next(self._slices)
-            except StopIteration as done:
-                self._slices = None
-                self._copy(done.value)
-            except ReplayError as error:
-                self._slices = None
-                self._app.say(f"No link: {error.faults[0].removeprefix('the run: ')}.")
+        if self._work is not None and work_for(self._work, _BUDGET):
+            self._work = None
+
+    def _make(self, slices: Generator[float, None, str]) -> Iterator[None]:
+        try:
+            self._copy((yield from telling(slices, self._show)))
+        except ReplayError as error:
+            self._app.say(f"No link: {error.faults[0].removeprefix('the run: ')}.")
+
+    def _show(self, done: float) -> None:
+        self._done = done
 
     def _copy(self, link: str) -> None:
         copied = copy_text(link)

@@ -71,7 +71,6 @@ class Mesh(Expansion[MeshDef]):
         velocity = super().velocity
         return velocity if self.body.velocities is None else velocity + np.array(self.body.velocities)
 
-
     @property
     def edges(self) -> NDArray[np.int8]:
         """Kind of edge (m,): a side of only one triangle is solid, one of two is none, and all else is a line."""

@@ -63,7 +63,6 @@ class Ring(Expansion[RingDef]):
         """Area that the ring keeps, as a multiple of the area of its form."""
         return 1.0 if self.body.inflation is None else self.body.inflation
 
-
     def outline_faults(self, path: str) -> Iterator[Fault]:
         """Faults where the ring does not stay inside the world's bounds."""
         return round_outline_faults(path, self.body.type, self.body.position, self.body.radius)

@@ -65,4 +65,3 @@ class Rope(Expansion[RopeDef]):
         if self.body.rest_length is None:
             return super().rest_length
         return np.full(len(self.pairs), self.body.rest_length)
-

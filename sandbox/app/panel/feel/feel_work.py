@@ -1,7 +1,6 @@
 """FeelWork: how a thing of a run feels, measured beside it in slices; and the search for Cs and Cd that feel so."""
 
-import time
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 
 from sandbox.app.base.sentences import capitalised, sentence
 from sandbox.app.run.playback import Playback
@@ -9,6 +8,7 @@ from sandbox.export.engines import body_names
 from sandbox.export.feel import Feel, Sought, feel_in_slices, material_of, sought_in_slices
 from sandbox.export.release import NoCurve
 from sandbox.level.assembly.build_world import LevelWorld
+from sandbox.level.format.slices import telling, work_for
 from sandbox.session.commands import SetCoefficients
 
 # Wall time [s] of a frame for the work, for which the person waits.
@@ -38,7 +38,7 @@ class FeelWork:
         self.wanted: tuple[float, float] | None = None
         self.done: float | None = None
         self.note = self.refusal = ""
-        self._work: Generator[float, None, Feel | Sought] | None = None
+        self._work: Iterator[None] | None = None
         self.choose()
 
     @property
@@ -76,7 +76,7 @@ class FeelWork:
         return feel_in_slices(world, self.body, None, self.way)
 
     def _begin(self, work: Generator[float, None, Feel | Sought], note: str) -> None:
-        self._work, self.done, self.note = work, 0.0, note
+        self._work, self.done, self.note = self._carry_out(work), 0.0, note
 
     def want(self, overshoot: float | None = None, settling: float | None = None) -> None:
         """Want another overshoot [1], settling [s] or both."""
@@ -102,15 +102,18 @@ class FeelWork:
 
     def step(self) -> bool:
         """Work for a moment; whether all is done."""
-        end = time.perf_counter() + BUDGET
         try:
-            while self._work is not None and time.perf_counter() < end:
-                self.done = next(self._work)
-        except StopIteration as over:
-            self._take(over.value)
+            if self._work is not None:
+                work_for(self._work, BUDGET)
         except ValueError as error:
             self._end(sentence(error))
         return self._work is None
+
+    def _carry_out(self, work: Generator[float, None, Feel | Sought]) -> Iterator[None]:
+        self._take((yield from telling(work, self._show)))
+
+    def _show(self, done: float) -> None:
+        self.done = done
 
     def _take(self, made: Feel | Sought) -> None:
         if isinstance(made, Sought):

@@ -33,6 +33,7 @@ from sandbox.physics.jit.translate.cpp_types import (
     Type,
 )
 from sandbox.physics.jit.translate.program import Translation, symbol_of, words_of
+from sandbox.processors import cores
 
 CALLING = Path(__file__).with_name("calling.c")
 # Determinism: no sum whose terms change places, no product that melts into one. Kernels ask for no error of a root.
@@ -138,7 +139,7 @@ def compiled(
         if not platform.is_web:
             (folder / CALLING.name).write_bytes(CALLING.read_bytes())
             units.append(CALLING.name)
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
+        with ThreadPoolExecutor(cores()) as pool:
             list(pool.map(lambda unit: _zig(folder, kept, _compiling(unit, platform, checked, sanitized)), units))
         _zig(folder, kept, _linking(units, symbols, platform, sanitized))
         return (folder / platform.file).read_bytes()
