@@ -3,74 +3,10 @@
 `Session.submit(command)` queues one; `docs/commands.md` lists them as files have them.
 """
 
-from sandbox.session.commands import (
-    COMMAND_TYPES,
-    AddBody,
-    AddParticle,
-    AddSpring,
-    Command,
-    CommandError,
-    CutSprings,
-    Free,
-    Grab,
-    HoldKey,
-    MoveBody,
-    MoveGrab,
-    Pin,
-    Push,
-    Redo,
-    Release,
-    Remove,
-    ScaleMass,
-    SetAir,
-    SetCoefficients,
-    SetColour,
-    SetDrive,
-    SetFirmness,
-    SetGravity,
-    SetInflation,
-    SetSolver,
-    Shake,
-    Undo,
-    Unpin,
-    apply,
-)
+from sandbox.session import commands as _commands
+from sandbox.session.commands import *  # noqa: F403
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
 from sandbox.session.replay.reader import read_script
 
-__all__ = [
-    "COMMAND_TYPES",
-    "AddBody",
-    "AddParticle",
-    "AddSpring",
-    "Command",
-    "CommandError",
-    "CutSprings",
-    "Free",
-    "Grab",
-    "HoldKey",
-    "MoveBody",
-    "MoveGrab",
-    "Pin",
-    "Push",
-    "Redo",
-    "Release",
-    "Remove",
-    "ScaleMass",
-    "ScriptLine",
-    "SetAir",
-    "SetCoefficients",
-    "SetColour",
-    "SetDrive",
-    "SetFirmness",
-    "SetGravity",
-    "SetInflation",
-    "SetSolver",
-    "Shake",
-    "Undo",
-    "Unpin",
-    "apply",
-    "from_record",
-    "read_script",
-    "to_record",
-]
+__all__ = ["ScriptLine", "from_record", "read_script", "to_record"]
+__all__ += _commands.__all__

@@ -15,7 +15,7 @@ from sandbox.level.rules.rule import ActionDef
 from sandbox.physics.commands.command import RULE
 from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import softening
-from sandbox.session.commands import CommandError, act
+from sandbox.session.commands.command import CommandError, act
 from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import stars_of
 

@@ -8,7 +8,7 @@ import importlib
 import pkgutil
 
 from sandbox.session.commands.adding import AddParticle, AddSpring
-from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandError, act, apply
+from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandError, apply
 from sandbox.session.commands.cutting import CutSprings
 from sandbox.session.commands.driving import SetDrive
 from sandbox.session.commands.firmness import SetFirmness
@@ -57,7 +57,6 @@ __all__ = [
     "Shake",
     "Undo",
     "Unpin",
-    "act",
     "apply",
 ]
 
