@@ -1,7 +1,7 @@
 """Items: what can be selected in a level, how it is named, and what of it is hidden or locked on the sheet."""
 
 import functools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
@@ -64,6 +64,12 @@ def _keys(_identity: int, selection: Selection) -> dict[Kind, frozenset[str | in
     return {kind: frozenset(keys) for kind, keys in found.items()}
 
 
+def marks(level: Level, selection: Selection, kind: Kind) -> list[bool]:
+    """Which things of a kind are selected, in file order."""
+    chosen, parts = keys(selection, kind), getattr(level, PARTS[kind])
+    return [key in chosen for key in (range(len(parts)) if kind == "spring" else [part.id for part in parts])]
+
+
 def chosen_bodies(level: Level, selection: Selection) -> list[AnyBody]:
     """The selected bodies in file order."""
     chosen = keys(selection, "body")
@@ -121,16 +127,11 @@ def chosen_items(level: Level, selection: Selection) -> dict[Item, Definition]:
 
 def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
     """The level with every selected item changed; what is not changed stays the same object."""
-    bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))
-    terrain, zones = keys(selection, "terrain"), keys(selection, "zone")
-    return with_same(
-        level,
-        bodies=tuple([change(body) if body.id in bodies else body for body in level.bodies]),
-        particles=tuple([change(part) if part.id in particles else part for part in level.particles]),
-        springs=tuple([change(part) if k in springs else part for k, part in enumerate(level.springs)]),
-        terrain=tuple([change(part) if part.id in terrain else part for part in level.terrain]),
-        zones=tuple([change(part) if part.id in zones else part for part in level.zones]),
-    )
+    new = {}
+    for kind, name in PARTS.items():
+        chosen = zip(getattr(level, name), marks(level, selection, kind), strict=True)
+        new[name] = tuple([change(part) if is_chosen else part for part, is_chosen in chosen])
+    return with_same(level, **new)
 
 
 def exchanged(
@@ -156,6 +157,11 @@ def _exchanged(old: Sequence[Any], chosen: frozenset[str | int], new: Sequence[A
         return tuple(new)
     turn = iter(new)
     return tuple([next(turn) if part.id in chosen else part for part in old])
+
+
+def picked(level: Level, indices: Mapping[Kind, Iterable[int]]) -> dict[str, tuple[Any, ...]]:
+    """Things of each kind by their indices, for the level's fields."""
+    return {PARTS[kind]: tuple([getattr(level, PARTS[kind])[index] for index in at]) for kind, at in indices.items()}
 
 
 def kept_springs(selection: Selection, kept: Iterable[int]) -> Selection:

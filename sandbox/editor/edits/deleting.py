@@ -6,7 +6,7 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.materials import without_lost_groups
 from sandbox.editor.edits.names import free_ids, owner_of, rewired, taken_ids, with_springs_followed
-from sandbox.editor.items import Item, chosen_bodies, keys
+from sandbox.editor.items import PARTS, Item, chosen_bodies, marks, picked
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import ParticleDef, SpringDef
 from sandbox.level.format.limits import BODY_RADIUS, COORDINATE_LIMIT
@@ -24,19 +24,9 @@ def delete(document: Document) -> Document:
     level, selection = document.level, document.selection
     if not selection:
         return document
-    bodies, particles, springs = keys(selection, "body"), keys(selection, "particle"), keys(selection, "spring")
-    terrain, zones = keys(selection, "terrain"), keys(selection, "zone")
-    kept = [index for index in range(len(level.springs)) if index not in springs]
-    level = replaced(
-        level,
-        bodies=tuple(body for body in level.bodies if body.id not in bodies),
-        particles=tuple(particle for particle in level.particles if particle.id not in particles),
-        springs=tuple(level.springs[index] for index in kept),
-        terrain=tuple(piece for piece in level.terrain if piece.id not in terrain),
-        zones=tuple(zone for zone in level.zones if zone.id not in zones),
-    )
-    level = with_springs_followed(level, level.rules, kept)
-    gone = bodies | particles | terrain | zones
+    kept = {kind: [k for k, is_gone in enumerate(marks(level, selection, kind)) if not is_gone] for kind in PARTS}
+    level = with_springs_followed(replaced(level, **picked(level, kept)), level.rules, kept["spring"])
+    gone = {item.key for item in selection if item.kind != "spring"}
     if gone:
         level, _ = rewired(level, lambda reference: None if owner_of(reference) in gone else reference)
     return Document(without_lost_groups(level))

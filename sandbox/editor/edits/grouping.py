@@ -18,6 +18,8 @@ from sandbox.editor.items import (
     items_of,
     kept_springs,
     keys,
+    marks,
+    picked,
     with_same,
 )
 from sandbox.level.document.model import Level, ZoneDef
@@ -61,19 +63,10 @@ def taken_groups(level: Level) -> set[str]:
 def reorder(document: Document, to: Place) -> Document:
     """Draw what is selected last ("front"), first ("back"), or one place later or earlier among its kind."""
     level, selection = document.level, document.selection
-    bodies, particles, springs = keys(selection, "body"), keys(selection, "particle"), keys(selection, "spring")
-    terrain, zones = keys(selection, "terrain"), keys(selection, "zone")
-    order = _order([index in springs for index in range(len(level.springs))], to)
-    level = with_same(
-        level,
-        bodies=tuple(level.bodies[index] for index in _order([body.id in bodies for body in level.bodies], to)),
-        particles=tuple(level.particles[index] for index in _order([p.id in particles for p in level.particles], to)),
-        springs=tuple(level.springs[index] for index in order),
-        terrain=tuple(level.terrain[index] for index in _order([piece.id in terrain for piece in level.terrain], to)),
-        zones=tuple(level.zones[index] for index in _order([zone.id in zones for zone in level.zones], to)),
-    )
-    level = with_springs_followed(level, level.rules, order)
-    return Document(level, kept_springs(selection, order))
+    order = {kind: _order(marks(level, selection, kind), to) for kind in PARTS}
+    level = with_same(level, **picked(level, order))
+    level = with_springs_followed(level, level.rules, order["spring"])
+    return Document(level, kept_springs(selection, order["spring"]))
 
 
 def rename_group(document: Document, old: str, new: str) -> Document:

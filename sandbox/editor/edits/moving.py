@@ -1,7 +1,7 @@
 """Moving, turning, scaling, mirroring and lining up what is selected; loose springs follow their ends."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Literal, TypeVar
 
@@ -124,14 +124,14 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     outside = np.flatnonzero(np.any(np.abs(places) > COORDINATE_LIMIT, axis=1))
     if len(outside):
         raise _beyond(particles[outside[0]])
-    shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
-    moved = [within(without_dust(shifted(body, dx, dy))) for body, (dx, dy) in shifts]
-    terrain = chosen_terrain(level, document.selection)
-    ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
-    ground = [within(without_dust(shifted(piece, dx, dy))) for piece, (dx, dy) in ways]
-    zones = chosen_zones(level, document.selection)
-    aside = zip(zones, by([zone.id for zone in zones]).tolist(), strict=True)
-    areas = all_validated([without_dust(shifted_zone(zone, dx, dy)) for zone, (dx, dy) in aside])
+
+    def aside(parts: Sequence[Any], shift: Callable[[Any, float, float], Any]) -> list[Any]:
+        ways = zip(parts, by([part.id for part in parts]).tolist(), strict=True)
+        return [without_dust(shift(part, dx, dy)) for part, (dx, dy) in ways]
+
+    moved = list(map(within, aside(bodies, shifted)))
+    ground = list(map(within, aside(chosen_terrain(level, document.selection), shifted)))
+    areas = all_validated(aside(chosen_zones(level, document.selection), shifted_zone))
     check_places(moved)
     rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
     placed = [replaced(particle, position=place) for particle, place in rows]

@@ -25,8 +25,7 @@ from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters, op
 from sandbox.editor.lint.hydraulics import hydraulics_at_another_length
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
-from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
-from sandbox.editor.lint.pools import water_in_water
+from sandbox.editor.lint.places import crossing_bodies, overlapping_particles, water_in_water
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.lint.stacks import buckling_columns
 from sandbox.editor.scene import Scene
