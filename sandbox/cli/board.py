@@ -12,7 +12,7 @@ from sandbox.processors import cores
 from sandbox.terminal import Progress, plain, processes, seconds, tell
 
 if TYPE_CHECKING:
-    from sandbox.app.site.race_links import RaceLinks
+    from sandbox.app.site.board_pages import RaceLinks
     from sandbox.session.board import Board
 
 # How much time of the processor an entry has [s]. Solutions of shipped levels take up to three.
@@ -52,7 +52,7 @@ def board(options: BoardOptions) -> int:
     print(f"{len(made.wins)} of {len(made.entries)} entries win")
     tell(made.faults)
     if options.comment is not None:
-        from sandbox.app.site.board_comment import comment_text
+        from sandbox.app.site.board_pages import comment_text
         from sandbox.level.format.writing import write_file
 
         write_file(options.comment, comment_text(made, list(map(plain, made.faults)), links).encode())
@@ -67,7 +67,7 @@ def board(options: BoardOptions) -> int:
 
 def _links(address: str) -> "RaceLinks":
     """Links on a site that will be there. Raises Refused."""
-    from sandbox.app.site.race_links import RaceLinks
+    from sandbox.app.site.board_pages import RaceLinks
 
     require_address(address)
     return RaceLinks(address)
