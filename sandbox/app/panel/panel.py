@@ -116,10 +116,10 @@ class Panel(PropertyOwner):
         self.firmness = FirmnessRows(playback, say, self._is_plain)
         if playback.level.look is not None and playback.level.look.material is not None:
             self.firmness.speak_of(self.material)
-        self.engineers = EngineersRows(playback, self, choose["rate"], self.firmness, self._both)
-        self.world = WorldRows(playback, self, choose, set_contacts)
+        self.engineers: EngineersRows = EngineersRows(playback, self, choose["rate"], self.firmness, self._both)
+        self.world: WorldRows = WorldRows(playback, self, choose, set_contacts)
         self.play = PlayRows(playback, lambda: choose["melt"](""), self._take_home)
-        self.springs = _SpringsSection(self)
+        self.springs: _SpringsSection = _SpringsSection(self)
         self._offered = self._present()
         self._scale_of: tuple[object, ...] = ()
         self._scale: CoefficientScale = PLAIN

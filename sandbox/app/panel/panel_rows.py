@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import pygame
 
 from sandbox.app.base.shortcuts import hint
+from sandbox.app.contracts.application import RunPanel
 from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.boxes import HEADING_SIZE, FoldHeading
@@ -158,31 +159,6 @@ class SectionRows(Protocol):
         ...
 
 
-class SectionOwner(Protocol):
-    """The panel of a section, with its run."""
-
-    playback: Playback
-
-    def say(self, text: str) -> None:
-        """Show a line to the person."""
-        ...
-
-    @property
-    def springs(self) -> SectionRows:
-        """Rows that the panel itself makes, for springs."""
-        ...
-
-    @property
-    def engineers(self) -> SectionRows:
-        """Rows that the panel itself needs, for engineers."""
-        ...
-
-    @property
-    def world(self) -> SectionRows:
-        """Rows that the panel itself needs, for the world."""
-        ...
-
-
 @dataclass(frozen=True)
 class PanelSection:
     """A section: its heading, and what makes its rows for a panel.
@@ -191,7 +167,7 @@ class PanelSection:
     """
 
     title: str
-    make: Callable[[SectionOwner], SectionRows]
+    make: Callable[[RunPanel], SectionRows]
     words: tuple[str, ...] = ()
 
     def is_asked_for(self, description: str) -> bool:

@@ -1,40 +1,22 @@
 """Allowed: what hands may do in a level, by its tools and its panel, and what is said where they may not."""
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 from sandbox.app.base.sentences import listed
+from sandbox.app.contracts.application import Playing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.panel.panel import Panel, has_use
-from sandbox.app.panel.panel_rows import SidePanel
-from sandbox.app.play.drive_keys import DriveKeys
-from sandbox.app.play.stage import CATALOGUE, Stage
+from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.play.toolbar import offered_parts
 from sandbox.level.document.model import Level
 from sandbox.level.rules.player_limits import MEANINGS
 from sandbox.tools.play_tools import PLAY_TOOLS
 
 
-class PanelScreen(Protocol):
-    """A screen with a run, its panel and its keys."""
-
-    stage: Stage
-    panel: SidePanel | None
-
-    def say(self, text: str) -> None:
-        """Show a line about the run."""
-        ...
-
-    @property
-    def keys(self) -> DriveKeys:
-        """The keys of the run."""
-        ...
-
-
 class Allowed:
     """What hands may do on a screen; tools: names of those that are kept away; has_panel: whether that is of use."""
 
-    def __init__(self, screen: PanelScreen, level: Level) -> None:
+    def __init__(self, screen: Playing, level: Level) -> None:
         self._screen, self._level = screen, level
         self.has_panel = has_use(level)
         self.tools = refused_tools(level)

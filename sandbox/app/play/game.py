@@ -3,13 +3,12 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import pygame
 
 from sandbox.app.base.shortcuts import shortcuts, spoken
-from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.application import Application, Playing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import Theme
@@ -50,25 +49,10 @@ NO_SOLUTION = "There is no solution beside this level."
 NO_GHOST = "There is no best run yet: win this level first, then its ghost can run along."
 
 
-class Played(Protocol):
-    """The screen that a game is played on."""
-
-    of_document: bool
-    source: Path | None
-
-    def say(self, text: str) -> None:
-        """Show a line about the run."""
-        ...
-
-    def restart(self, as_it_was: bool = False) -> None:
-        """Begin the run again from its beginning; as_it_was: without what was tuned."""
-        ...
-
-
 class Game:
     """The rules of a level on a stage; is_on: whether the run is one to be won or lost, and not one of a pair."""
 
-    def __init__(self, app: Application, screen: Played, stage: Callable[[], Stage], is_on: bool) -> None:
+    def __init__(self, app: Application, screen: Playing, stage: Callable[[], Stage], is_on: bool) -> None:
         self._app, self._screen, self._stage = app, screen, stage
         level = stage().playback.level
         self._has_rules = bool(level.rules)
