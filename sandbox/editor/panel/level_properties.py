@@ -9,7 +9,7 @@ from sandbox.editor.edits.fields import set_level_field, set_setting
 from sandbox.editor.panel.extra_values import extras_properties
 from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.hands_form import hands_properties
-from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
+from sandbox.editor.panel.property import Property, Section, changing, part_properties, with_axes
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import ContactsDef, Level, Settings
 
@@ -24,7 +24,9 @@ def level_properties(document: Document) -> tuple[Section, ...]:
     """Properties of the level itself and of its settings of time."""
     level = document.level
     about = fields_of(Level)
-    of_level = [Property(name, about[name], getattr(level, name), partial(_set_level, name)) for name in _LEVEL_FIELDS]
+    of_level = [
+        Property(name, about[name], getattr(level, name), changing(set_level_field, name)) for name in _LEVEL_FIELDS
+    ]
     settings = []
     for name, each in fields_of(Settings).items():
         value = getattr(level.settings, name)
@@ -86,10 +88,6 @@ def _first_walls(document: Document) -> dict[str, Any]:
 _FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {
     "contacts": lambda _: {}, "walls": _first_walls, "look": lambda _: {},
 }  # fmt: skip
-
-
-def _set_level(field: str, document: Document, value: Any) -> Document:
-    return set_level_field(document, field, value)
 
 
 def _set_time(field: str, document: Document, value: Any) -> Document:

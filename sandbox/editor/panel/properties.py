@@ -15,7 +15,7 @@ from sandbox.editor.items import Definition, Item, Selection, chosen_definitions
 from sandbox.editor.panel.extra_values import extras_properties
 from sandbox.editor.panel.field_info import FieldInfo, Pick, fields_of
 from sandbox.editor.panel.firmness import firmness_properties
-from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
+from sandbox.editor.panel.property import MIXED, Property, Section, changing, part_properties, same, with_axes
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.panel.weights import weight_properties
 from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
@@ -182,11 +182,7 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
         about = _with_its_start(about, parts)
     if about.kind == "extras":
         return extras_properties(about, [part.extras for part in parts], partial(_change_extras, selection))
-    return [Property(name, about, value, partial(_set_field, selection, name))]
-
-
-def _set_field(selection: Selection, name: str, document: Document, value: Any) -> Document:
-    return set_field(document, selection, name, value)
+    return [Property(name, about, value, changing(set_field, selection, name))]
 
 
 def _with_its_start(about: FieldInfo, parts: Sequence[Definition]) -> FieldInfo:
@@ -273,7 +269,7 @@ def _zone_properties(selection: Selection, zone: ZoneDef) -> list[Property]:
     }  # fmt: skip
     pick: Pick = "box" if name == "box" else ""
     about = replace(fields_of(ZoneDef)[name], title=titles[name], tooltip=tips[name], optional=False, pick=pick)
-    return [Property(name, about, getattr(zone, name), partial(_set_field, selection, name))]
+    return [Property(name, about, getattr(zone, name), changing(set_field, selection, name))]
 
 
 # The shape of a jelly.

@@ -31,6 +31,11 @@ from sandbox.level.format.quantities import Description, significant
 Change = Callable[[Document, Callable[[Any], Any]], Document]
 
 
+def changing(change: Callable[..., Document], *where: Any) -> Callable[..., Document]:
+    """A change of what lies at some place in a document, for the document and a value, if it takes one."""
+    return lambda document, *value: change(document, *where, *value)
+
+
 class Mixed(Enum):
     """Stands for the value where items differ."""
 

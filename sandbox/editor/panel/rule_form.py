@@ -18,7 +18,7 @@ from sandbox.editor.edits.rule_edits import (
 )
 from sandbox.editor.panel.action_form import action_properties
 from sandbox.editor.panel.field_info import FieldInfo, choice_of, fields_of
-from sandbox.editor.panel.property import Property, Section, named, toggled
+from sandbox.editor.panel.property import Property, Section, changing, named, toggled
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level
 from sandbox.level.plan.run_rules import each_in, members_of, several
@@ -389,19 +389,11 @@ def _counter_properties(level: Level) -> list[Property]:
     made = []
     for index in range(len(level.counters)):
         for field, title in titles.items():
-            remove = partial(_delete_counter, index) if field == "id" else None
+            remove = changing(delete_counter, index) if field == "id" else None
             each = replace(about[field], title=title, empty="hidden" if field == "text" else "")
             value = getattr(level.counters[index], field)
             made.append(
-                Property(f"counter.{index}.{field}", each, value, partial(_set_counter, index, field), remove=remove)
+                Property(f"counter.{index}.{field}", each, value, changing(change_counter, index, field), remove=remove)
             )
     add = FieldInfo("part", "Counter", tooltip="A number that rules change and ask for, such as a score.")
     return [*made, Property("counter", add, False, lambda document, _: add_counter(document))]
-
-
-def _set_counter(index: int, field: str, document: Document, value: Any) -> Document:
-    return change_counter(document, index, field, value)
-
-
-def _delete_counter(index: int, document: Document) -> Document:
-    return delete_counter(document, index)
