@@ -3,12 +3,12 @@
 import contextlib
 import math
 
-import numpy as np
 import pygame
 
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import MUTED
+from sandbox.app.edit.canvas.gestures import Gesture
 from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_field
@@ -62,13 +62,11 @@ class Corners:
             draw_corner(surface, place, self._scale, CORNER, is_chosen=number == chosen)
 
 
-class Placing:
+class Placing(Gesture):
     """A drag of one point of an item to what it snaps to; the item is shown as it would be.
 
     anchor: what directions are measured from. A kind of it says what it changes, and how that is called.
     """
-
-    transform: np.ndarray | None = None
 
     def __init__(self, screen: Editing, item: Item, start: Point, anchor: Point, label: str) -> None:
         self._screen, self._item, self._anchor, self._label = screen, item, anchor, label

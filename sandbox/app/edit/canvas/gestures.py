@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 import pygame
@@ -147,31 +146,30 @@ def _factor(extent: float, change: float) -> float:
     return max((extent + change) / extent, SMALLEST_FACTOR) if extent else 1.0
 
 
-class Gesture(Protocol):
+class Gesture:
     """A drag of the select tool; transform (2, 3): what it does to the selection so far, None = nothing."""
 
-    transform: np.ndarray | None
+    transform: np.ndarray | None = None
 
     @property
     def measure(self) -> str:
         """Length, angle or factors of the drag so far, in words."""
-        ...
+        return ""
 
     def to(self, point: Point, modifiers: int) -> None:
         """Follow the pointer to a point [m]."""
-        ...
+        raise NotImplementedError
 
     def end(self) -> None:
         """Make the edit or the selection, as the pointer is released."""
-        ...
+        raise NotImplementedError
 
     def ghost(self) -> Document | None:
         """The document as it would be if the drag ended now, where the transform does not say it."""
-        ...
+        return None
 
     def draw(self, surface: pygame.Surface) -> None:
         """Draw what the gesture shows besides the moved selection."""
-        ...
 
 
 def pick_mode(modifiers: int, click: bool) -> Mode:
@@ -182,20 +180,11 @@ def pick_mode(modifiers: int, click: bool) -> Mode:
     return "add" if shift else "replace"
 
 
-class _Matrix:
-    """A gesture that changes the selection by its transform, or not at all."""
-
-    def ghost(self) -> Document | None:
-        """None: a transform of the selection shows the change, no ghost of the document."""
-        return None
-
-
-class Moving(_Matrix):
+class Moving(Gesture):
     """Moves the selection, drawn by one of its particles to what it snaps to; an end that comes onto one is joined."""
 
     def __init__(self, screen: Editing, start: Point) -> None:
         self._screen, self._start = screen, start
-        self.transform: np.ndarray | None = None
         self._snap = Snap(start)
         others = frozenset(screen.scene.items) - screen.document.selection
         self._taken = snap(screen.scene, start, screen.reach, skip=others)
@@ -305,12 +294,11 @@ class Copying(Moving):
             self._screen.edit("Duplicate", lambda document: duplicate(document, *self._by))
 
 
-class Transforming(_Matrix):
+class Transforming(Gesture):
     """Scales or turns the selection by one of its handles."""
 
     def __init__(self, screen: Editing, handles: Handles, name: str, start: Point, even: bool) -> None:
         self._screen, self._handles, self._name, self._start, self._even = screen, handles, name, start, even
-        self.transform: np.ndarray | None = None
         self._change: Scaling | Turn | None = None
 
     @property
@@ -344,15 +332,9 @@ class Transforming(_Matrix):
         elif isinstance(change, Scaling) and (change.x, change.y) != (1.0, 1.0):
             self._screen.edit("Scale", lambda document: scale(document, change.x, change.y, change.centre))
 
-    def draw(self, surface: pygame.Surface) -> None:
-        """Draw nothing besides the selection."""
 
-
-class Boxing(_Matrix):
+class Boxing(Gesture):
     """Selects what lies in a box; taken: what picking items takes, with the whole of their groups."""
-
-    transform: np.ndarray | None = None
-    measure = ""
 
     def __init__(self, screen: Editing, start: Point, taken: Callable[[Selection], Selection]) -> None:
         self._screen, self._start, self._end, self._modifiers, self._taken = screen, start, start, 0, taken
@@ -377,11 +359,8 @@ class Boxing(_Matrix):
         pygame.draw.rect(surface, ACCENT, box, 1)
 
 
-class Lassoing(_Matrix):
+class Lassoing(Gesture):
     """Selects what lies inside a freehand line; taken: as of a box."""
-
-    transform: np.ndarray | None = None
-    measure = ""
 
     def __init__(self, screen: Editing, start: Point, taken: Callable[[Selection], Selection]) -> None:
         self._screen, self._line, self._modifiers, self._taken = screen, [start], 0, taken
