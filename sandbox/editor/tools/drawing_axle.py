@@ -49,18 +49,10 @@ class AxleDrawing(RimDrawing[AxleOptions]):
     defaults = AxleOptions()
     start_hint = "Press on a body, where the axle goes, and drag to the rim; or click both"
 
-    def ghost(self, document: Document) -> Document | None:
+    def _shown(self, document: Document, points: list[Snap]) -> Document:
         """The wheel and its struts, with stand-ins of the particles that they end at."""
-        points = self._so_far()
-        self._ghost_fault = ""
-        if not self._sound(points):
-            return None
-        try:
-            stage, stood = staged(document, [*points, *self._struts(document, points)])
-            return self._mounted(stage, stood[:2], stood[2:])
-        except EditError as error:
-            self._ghost_fault = str(error)
-            return None
+        stage, stood = staged(document, [*points, *self._struts(document, points)])
+        return self._mounted(stage, stood[:2], stood[2:])
 
     def placed(self, document: Document, points: list[Snap]) -> Document:
         """The document with the wheel on its axle. Raises EditError."""

@@ -50,19 +50,10 @@ class HangersDrawing(Drawing[HangersOptions]):
         super().__init__(options, reach)
         self._most = self._made = 1
 
-    def ghost(self, document: Document) -> Document | None:
+    def _shown(self, document: Document, points: list[Snap]) -> Document:
         """The hangers, with stand-ins of the particles that they join."""
-        points = self._so_far()
-        self._ghost_fault = ""
-        if not self._sound(points):
-            return None
-        try:
-            pairs = self._pairs(document, points)
-            stage, stood = staged(document, [snap for pair in pairs for snap in pair])
-            return self._hung(stage, list(zip(stood[::2], stood[1::2], strict=True)))
-        except EditError as error:
-            self._ghost_fault = str(error)
-            return None
+        stage, stood = staged(document, [snap for pair in self._pairs(document, points) for snap in pair])
+        return self._hung(stage, list(zip(stood[::2], stood[1::2], strict=True)))
 
     def placed(self, document: Document, points: list[Snap]) -> Document:
         """The document with the hangers, one group, selected. Raises EditError."""

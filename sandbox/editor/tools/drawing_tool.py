@@ -102,7 +102,7 @@ class Drawing(Generic[AnyOptions]):
         if not self._sound(points):
             return None
         try:
-            return self.placed(*staged(document, points))
+            return self._shown(document, points)
         except EditError as error:
             self._ghost_fault = str(error)
             return None
@@ -199,6 +199,10 @@ class Drawing(Generic[AnyOptions]):
     def joins(self, index: int) -> bool:
         """Whether the particle that the point of that index is on becomes one with what is drawn."""
         return self.joins_particles
+
+    def _shown(self, document: Document, points: list[Snap]) -> Document | None:
+        """The ghost of a sound gesture. Raises EditError."""
+        return self.placed(*staged(document, points))
 
     # ---- between them
 

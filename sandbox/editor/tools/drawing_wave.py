@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from sandbox.editor.document import Document, EditError
+from sandbox.editor.document import Document
 from sandbox.editor.edits.additions import muscles, wave_along
 from sandbox.editor.tools.drawing_options import Options, number_option
 from sandbox.editor.tools.drawing_tool import Drawing, EditorTool
@@ -30,17 +30,10 @@ class WaveDrawing(Drawing[WaveOptions]):
         super().__init__(options, reach)
         self._count = 0
 
-    def ghost(self, document: Document) -> Document | None:
+    def _shown(self, document: Document, points: list[Snap]) -> None:
         """None: nothing is added; `hint` says why it cannot be done."""
-        points = self._so_far()
-        self._ghost_fault = ""
-        if self._sound(points):
-            self._count = len(muscles(document))
-            try:
-                self.placed(document, points)
-            except EditError as error:
-                self._ghost_fault = str(error)
-        return None
+        self._count = len(muscles(document))
+        self.placed(document, points)
 
     def placed(self, document: Document, points: list[Snap]) -> Document:
         """The document with the phases; the selection stays. Raises EditError."""
