@@ -15,9 +15,14 @@ def short(value: float) -> str:
         return "0" if value == 0.0 else "infinite"
     if not SMALLEST <= abs(value) < LARGEST:
         return f"{value:.{DIGITS}g}"
-    rounded = float(f"{value:.{DIGITS}g}")
-    decimals = max(0, DIGITS - 1 - math.floor(math.log10(abs(rounded))))
-    text = f"{rounded:.{decimals}f}"
+    return written_out(value, DIGITS)
+
+
+def written_out(value: float, digits: int) -> str:
+    """A number other than 0 in this many significant digits, without a power of ten; none below 1e-12 is shown."""
+    rounded = float(f"{value:.{digits}g}")
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(rounded))))
+    text = f"{rounded:.{min(decimals, 12)}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 

@@ -17,7 +17,7 @@ from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody, AddSpring, Command, CutSprings, Remove
 from sandbox.tools.dropping import in_pace
-from sandbox.tools.tool import NOTHING, Loop, PlayTool, Point, PointerEvent, Response, Submission, Tool
+from sandbox.tools.tool import NOTHING, Loop, PlayTool, Point, PointerEvent, Response, Tool
 
 # The body of an axle, by its id, and what it is of.
 AXLE_ID, STUFF = "axle", "drawn axle"
@@ -101,8 +101,7 @@ class AxleTool(Tool):
             if isinstance(hinge, str):
                 return NOTHING
             commands = _added(snapshot, hinge, has_motor=False)
-        gesture = self._new_gesture()
-        return Response(tuple(Submission(command, gesture) for command in commands))
+        return self._in_one_gesture(commands)
 
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
         """A particle of the body that an axle would go through."""

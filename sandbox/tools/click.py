@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.physics.analysis.query import nearest_particle, shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command, Pin, Remove, Unpin
-from sandbox.tools.tool import NOTHING, PlayTool, PointerEvent, Response, Submission, Tool
+from sandbox.tools.tool import NOTHING, PlayTool, PointerEvent, Response, Tool
 
 # The middle of a coarse body has no particle that is nearer.
 REACH = 2.5
@@ -30,8 +30,7 @@ class ClickTool(Tool):
         particle = nearest_particle(snapshot, event.position, self.reach * event.pick_radius)
         if particle is None:
             return NOTHING
-        gesture = self._new_gesture()
-        return Response(tuple(Submission(command, gesture) for command in self.commands(particle, snapshot)))
+        return self._in_one_gesture(self.commands(particle, snapshot))
 
 
 class PinTool(ClickTool):

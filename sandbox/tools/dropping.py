@@ -25,7 +25,6 @@ from sandbox.tools.tool import (
     PointerEvent,
     Response,
     Sized,
-    Submission,
     resized,
 )
 
@@ -262,8 +261,7 @@ class ThrowTool(PlacedTool):
             commands = self.made(landing, velocity, snapshot)
         except ValueError as error:
             return Response(message=f"{error}.")
-        gesture = self._new_gesture()
-        return Response(tuple(Submission(command, gesture) for command in commands))
+        return self._in_one_gesture(commands)
 
     def _thrown(self, event: PointerEvent) -> Point:
         """The velocity [m/s] of the pointer in the last moment."""

@@ -10,7 +10,7 @@ import numpy as np
 from sandbox.physics.analysis.query import particle_at
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody, AddParticle, AddSpring, Command
-from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PlayTool, Point, PointerEvent, Response, Submission
+from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PlayTool, Point, PointerEvent, Response
 
 # Lengths of a rope between two particles, its mass for each metre [kg/m], and their radius [m] at most and as a share
 # of such a length.
@@ -138,8 +138,7 @@ class PullTool(PlacedTool):
             self._refusal = TOO_SHORT
         if self._refusal:
             return NOTHING
-        gesture = self._new_gesture()
-        return Response(tuple(Submission(command, gesture) for command in self._make((start, end), snapshot)))
+        return self._in_one_gesture(self._make((start, end), snapshot))
 
     def reconcile(self, snapshot: Snapshot) -> None:
         """Move the start with the thing it is tied to; nothing is pulled where that is gone."""

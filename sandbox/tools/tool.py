@@ -1,7 +1,7 @@
 """What tools share: pointer events in, commands out. No window, no pixels. PlayTool: what the window knows of one."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
 
@@ -91,6 +91,11 @@ class Tool(ABC):
     @abstractmethod
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Answer one pointer event; the snapshot is of the present tick."""
+
+    def _in_one_gesture(self, commands: Iterable[Command]) -> Response:
+        """Commands that make up a gesture of their own."""
+        gesture = self._new_gesture()
+        return Response(tuple(Submission(command, gesture) for command in commands))
 
     def cancel(self) -> Response:
         """Give up what is being done, as Escape asks, and let go of everything."""

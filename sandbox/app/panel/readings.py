@@ -6,6 +6,7 @@ from collections.abc import Collection
 import numpy as np
 
 from sandbox.app.base.sag_map import NO_SAG, sag_sentence, size_word
+from sandbox.export.numbers import written_out
 from sandbox.physics.analysis.stability import CoefficientLimits
 from sandbox.physics.arrays import Floats
 from sandbox.physics.softness.body_motion import FLAT, SpringMotion
@@ -27,10 +28,7 @@ def number(value: float, digits: int = DIGITS) -> str:
         return "\u221e" if value > 0.0 else "\u2212\u221e" if value < 0.0 else "?"
     if value == 0.0 or abs(value) < 1e-12:
         return "0"
-    value = float(f"{value:.{digits}g}")
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    text = f"{value:.{min(decimals, 12)}f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
+    return written_out(value, digits)
 
 
 def with_unit(value: float, unit: str) -> str:
