@@ -229,8 +229,12 @@ class EditingMachine(RuleBasedStateMachine):
 
     @rule(shares=SHARES)
     def cut(self, shares) -> None:
-        count = len(self.scene.rest_length)
-        self._edit(placing.cut_springs, [self.scene.spring_name(int(s * count)) for s in shares] if count else [":0"])
+        cut, count = {"": set()}, len(self.scene.rest_length)
+        for share in shares if count else ():
+            body, _, number = self.scene.spring_name(int(share * count)).rpartition(":")
+            cut.setdefault(body, set()).add(int(number))
+        if count:
+            self._edit(placing.without_springs, cut, cut.pop(""))
 
     @rule(by=POINTS, drag=st.none() | st.just("drag"))
     def move(self, by, drag) -> None:

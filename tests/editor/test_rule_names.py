@@ -11,7 +11,7 @@ from sandbox.editor.edits.deleting import break_apart, delete
 from sandbox.editor.edits.fields import rename, set_field, set_level_field
 from sandbox.editor.edits.grouping import rename_group, reorder, ungroup
 from sandbox.editor.edits.names import lost_rules
-from sandbox.editor.edits.placing import cut_springs
+from sandbox.editor.edits.placing import without_springs
 from sandbox.editor.items import Item
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import read_level
@@ -82,7 +82,7 @@ def test_rules_follow_what_is_renamed(item, old):
 def test_rules_that_cut_a_loose_spring_still_mean_it_once_another_one_is_gone_or_before_it():
     before = document([{"when": {"key": "g"}, "then": [{"cut": ":2"}]}])
     assert delete(only(before, ("spring", 0))).level.rules[0].then[0].cut == ":1"
-    assert cut_springs(before, [":1"]).level.rules[0].then[0].cut == ":1"
+    assert without_springs(before, {}, {1}).level.rules[0].then[0].cut == ":1"
     assert reorder(only(before, ("spring", 2)), "back").level.rules[0].then[0].cut == ":0"
     assert delete(only(before, ("particle", "ball"))).level.rules[0].then[0].cut == ":0"
 

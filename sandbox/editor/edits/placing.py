@@ -106,21 +106,6 @@ def repinned(level: Level, scene: Scene, pinned: dict[int, bool]) -> Level:
     )
 
 
-def cut_springs(document: Document, names: Iterable[str]) -> Document:
-    """Take springs out, by name: those of bodies are cut, loose ones go. Raises EditError."""
-    level = document.level
-    cut: dict[str, set[int]] = {}
-    gone: set[int] = set()
-    bodies = {body.id: expansion(body).form_count[1] for body in level.bodies}
-    for name in names:
-        owner, _, text = name.rpartition(":")
-        limit = bodies.get(owner, 0) if owner else len(level.springs)
-        if not (text.isdecimal() and text.isascii() and len(text) < 10 and int(text) < limit):
-            raise EditError(f'there is no spring "{name}"')
-        (cut.setdefault(owner, set()) if owner else gone).add(int(text))
-    return without_springs(document, cut, gone)
-
-
 def without_springs(document: Document, cut: dict[str, set[int]], gone: set[int]) -> Document:
     """The document with springs of bodies cut and loose springs, by index, taken out."""
     level = document.level
