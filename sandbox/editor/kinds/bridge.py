@@ -61,10 +61,8 @@ class BridgeEditing(BodyEditing[BridgeDef]):
 
     tools: ClassVar = (EditorTool("bridge", "B", "Bridge", BridgeDrawing),)
     formless = frozenset({"particle_mass", "pin"})
-
-    def can_stretch(self) -> bool:
-        """True: its height is a field of its own."""
-        return True
+    # Its height is a field of its own.
+    stretches = True
 
     def lies_askew(self, motion: PlaneMap) -> bool:
         """Whether a motion turns it: its bottom row then starts no longer straight below."""

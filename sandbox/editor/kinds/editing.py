@@ -83,6 +83,8 @@ class BodyEditing(Generic[Body]):
     tools: ClassVar[tuple[EditorTool, ...]] = ()
     # Fields that its form does not depend on, beside those of every body.
     formless: ClassVar[frozenset[str]] = frozenset()
+    # Whether every body of the kind can be made longer without being made higher as much.
+    stretches: ClassVar[bool] = False
 
     def __init__(self, body: Body) -> None:
         self.body = body
@@ -94,7 +96,7 @@ class BodyEditing(Generic[Body]):
 
     def can_stretch(self) -> bool:
         """Whether the body can be made longer without being made higher as much."""
-        return False
+        return self.stretches
 
     def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The fields that a motion changes, other than pose and velocity.

@@ -10,10 +10,7 @@ class MeshEditing(BodyEditing[MeshDef]):
     """Edits a mesh, which is placed by its particles."""
 
     formless = frozenset({"masses", "velocities", "bending"})
-
-    def can_stretch(self) -> bool:
-        """True: a mesh can be stretched any way."""
-        return True
+    stretches = True
 
     def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The places of all particles, their velocities and triangles, after a motion."""

@@ -66,10 +66,7 @@ class RopeEditing(BodyEditing[RopeDef]):
 
     tools: ClassVar = (EditorTool("rope", "R", "Rope", RopeDrawing),)
     formless = frozenset({"particle_mass", "end_mass", "rest_length", "pin", "bending"})
-
-    def can_stretch(self) -> bool:
-        """True: a rope has no height."""
-        return True
+    stretches = True
 
     def mapped(self, motion: PlaneMap) -> dict[str, Any]:
         """The ends, and the length of the links, after a motion."""
