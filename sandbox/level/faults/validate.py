@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -131,17 +131,7 @@ def _beyond_count(particles: int, springs: int) -> str | None:
 def _collision_faults(level: Level) -> Iterator[Fault]:
     """Faults of terrain, walls and collision groups."""
     taken: set[str] = {item.id for _, item in colliding_items(level)}
-    corners = 0
-    for index, piece in enumerate(level.terrain):
-        path = f"terrain.{index}"
-        if piece.id in taken:
-            yield f"{path}.id", f"{shown(piece.id)} is taken; every piece of terrain needs an id of its own"
-        taken.add(piece.id)
-        corners += len(piece.polyline or piece.polygon or ())
-        if corners > CORNER_LIMIT:
-            yield path, f"brings the corners of all terrain above {CORNER_LIMIT:,}; use fewer"
-            break
-        yield from _terrain_shape_faults(path, piece)
+    yield from _outline_faults("terrain", level.terrain, "piece of terrain", taken, _terrain_shape_faults)
     walls = level.walls
     if walls is not None and not (walls.box[0] < walls.box[2] and walls.box[1] < walls.box[3]):
         yield "walls.box", "left and bottom come first and must be below right and top"
@@ -160,6 +150,23 @@ def _collision_faults(level: Level) -> Iterator[Fault]:
         yield "bodies", f"name {len(groups) - 2} collision groups; at most {COLLISION_GROUP_LIMIT - 2} are allowed"
 
 
+def _outline_faults(
+    field: str, parts: Sequence[Any], noun: str, taken: set[str], faults_of: Callable[[str, Any], Iterator[Fault]]
+) -> Iterator[Fault]:
+    """Faults of the ids and shapes of terrain or zones; taken: the ids of other things."""
+    corners = 0
+    for index, part in enumerate(parts):
+        path = f"{field}.{index}"
+        if part.id in taken:
+            yield f"{path}.id", f"{shown(part.id)} is taken; every {noun} needs an id of its own"
+        taken.add(part.id)
+        corners += len(getattr(part, "polyline", None) or part.polygon or ())
+        if corners > CORNER_LIMIT:
+            yield path, f"brings the corners of all {field} above {CORNER_LIMIT:,}; use fewer"
+            break
+        yield from faults_of(path, part)
+
+
 def _terrain_shape_faults(path: str, piece: TerrainDef) -> Iterator[Fault]:
     if (piece.polyline is None) == (piece.polygon is None):
         yield path, "needs one of polyline and polygon"
@@ -175,19 +182,7 @@ def _terrain_shape_faults(path: str, piece: TerrainDef) -> Iterator[Fault]:
 def _zone_faults(level: Level) -> Iterator[Fault]:
     """Faults of the ids, shapes and water of zones."""
     taken = {item.id for items in (level.bodies, level.particles, level.terrain) for item in items}
-    corners = 0
-    for index, zone in enumerate(level.zones):
-        path = f"zones.{index}"
-        if zone.id in taken:
-            yield f"{path}.id", f"{shown(zone.id)} is taken; every zone needs an id of its own"
-        taken.add(zone.id)
-        corners += len(zone.polygon or ())
-        if corners > CORNER_LIMIT:
-            yield path, f"brings the corners of all zones above {CORNER_LIMIT:,}; use fewer"
-            break
-        yield from _zone_shape_faults(path, zone)
-        if zone.water is not None and zone.box is None:
-            yield f"{path}.water", "only a box holds water; give the zone a box, or take the water out"
+    yield from _outline_faults("zones", level.zones, "zone", taken, _zone_shape_faults)
 
 
 def _zone_shape_faults(path: str, zone: ZoneDef) -> Iterator[Fault]:
@@ -198,6 +193,8 @@ def _zone_shape_faults(path: str, zone: ZoneDef) -> Iterator[Fault]:
         yield f"{path}.box", "left and bottom come first and must be below right and top"
     elif polygon is not None and not is_simple(polygon):
         yield f"{path}.polygon", "its sides touch or cross, or a corner comes twice; draw it without"
+    if zone.water is not None and box is None:
+        yield f"{path}.water", "only a box holds water; give the zone a box, or take the water out"
 
 
 def _actuator_faults(level: Level) -> Iterator[Fault]:
