@@ -19,6 +19,7 @@ from sandbox.physics.joints.joint_rows import (
     Joints,
     clamped,
     couple_masses,
+    give_impulse,
     iterate_joint,
     own_response,
     row_velocity,
@@ -94,23 +95,16 @@ def solve(
         u = row_velocity(rows, k, state.velocity, step.still)
         step.joint_impulse[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * step.mass[k], rows.limit[k])
     apply_explicit(state, inputs, step, True, h)
-    rows, velocity, inverse_mass = joints.rows, state.velocity, state.inverse_mass
     for k in range(rows.limit.shape[0]):
-        for e in range(rows.first[k], rows.first[k + 1]):
-            p = rows.particle[e]
-            velocity[p, 0] += rows.gradient[e, 0] * step.joint_impulse[k] * inverse_mass[p]
-            velocity[p, 1] += rows.gradient[e, 1] * step.joint_impulse[k] * inverse_mass[p]
+        give_impulse(rows, k, step.joint_impulse[k], state.velocity, state.inverse_mass)
     # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
     for k in range(rows.limit.shape[0]):
-        if rows.pair[k] != SCALAR:
-            rows.impulse[k] = 0.0
-    for k in range(rows.limit.shape[0]):
         if rows.pair[k] == PAIR:
-            iterate_joint(joints, k, step.still, velocity, inverse_mass)
+            rows.impulse[k] = rows.impulse[k + 1] = 0.0
+            iterate_joint(joints, k, step.still, state.velocity, state.inverse_mass)
     if contacts.particle.shape[0] > 0:
         sweep_masses(contacts, terms, order, state, step.change, delassus, sweeps, h)
     # lag += h (u' - target)
-    rows = joints.rows
     for k in range(rows.limit.shape[0]):
         u = row_velocity(rows, k, state.velocity, step.still)
         lag = rows.impulse[k] - JOINT_STIFFNESS * (u - rows.target[k]) * step.mass[k]

@@ -92,9 +92,7 @@ class FreeContactScratch(NamedTuple):
     highest: Annotated[Slots, "2 * contacts"]  # level so far
     local: Annotated[Slots, "particles"]  # the place of a particle, -1: none
     ahead: Annotated[FloatRows, "particles, 2"]  # [m]: how much further than h v' a particle has gone in the step
-    added: Annotated[
-        FloatRows, "2 * contacts, 2"
-    ]  # [m/s]: what impacts (free_impacts.py) have added in this small step
+    added: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what forces and the last small step add in this one
     stamp: Annotated[Slots, "2 * contacts"]  # the pass that it was hit in
     since: Annotated[Floats, "2 * contacts"]  # [s]: when that was
     hit: Annotated[Slots, "contacts"]  # the constraint of a hit; by hit, as all down to last
@@ -210,20 +208,10 @@ def _place_contact(
         a = contacts.end_a[c]
         b = contacts.end_b[c]
         ratio = contacts.share[c]
-        work.particle[count] = contacts.particle[c]
-        work.weight[count] = 0.0
-        work.turning[count] = 0.0
-        work.highest[count] = 0
-        work.stamp[count] = 0
-        work.turned[count] = 0.0
-        work.added[count, 0] = 0.0
-        work.added[count, 1] = 0.0
-        for column in range(8):
-            work.motion[count, column] = 0.0
-        for axis in range(2):
-            if b >= 0:
+        _open_place(count, contacts.particle[c], 0.0, 0.0, work)
+        if b >= 0:
+            for axis in range(2):
                 work.motion[count, VX + axis] = (1.0 - ratio) * start[a, axis] + ratio * start[b, axis]
-            work.gain[count, axis] = 0.0
         work.motion[count, VX] += contacts.belt[c] * contacts.normal[c, 1]
         work.motion[count, VY] -= contacts.belt[c] * contacts.normal[c, 0]
         q, count = count, count + 1
@@ -255,21 +243,24 @@ def _place_of(
     if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
         return work.local[p], count
     work.local[p] = count
-    work.particle[count] = p
-    work.weight[count] = colliders.inverse_mass[p]
-    work.turning[count] = colliders.turning[p]
-    work.highest[count] = 0
-    work.stamp[count] = 0
-    work.turned[count] = 0.0
+    _open_place(count, p, colliders.inverse_mass[p], colliders.turning[p], work)
     for axis in range(2):
-        work.added[count, axis] = 0.0
         work.motion[count, VX + axis] = start[p, axis]
-        work.motion[count, WX + axis] = 0.0
-        work.motion[count, PUSHED_X + axis] = 0.0
         work.gain[count, axis] = colliders.velocity[p, axis] - start[p, axis]
     work.motion[count, SURFACE] = spin[p] * colliders.radius[p]
-    work.motion[count, PUSHED_SURFACE] = 0.0
     return count, count + 1
+
+
+@inner_kernel
+def _open_place(place: int, p: int, weight: float, turning: float, work: FreeContactScratch) -> None:
+    # A place for a particle, at rest.
+    work.particle[place], work.weight[place], work.turning[place] = p, weight, turning
+    work.highest[place] = work.stamp[place] = 0
+    work.turned[place] = 0.0
+    for axis in range(2):
+        work.added[place, axis] = work.gain[place, axis] = 0.0
+    for column in range(8):
+        work.motion[place, column] = 0.0
 
 
 @inner_kernel
@@ -372,7 +363,6 @@ def _fill_constraint(contacts: Contacts, c: int, k: int, colliders: Colliders, w
         if row[k, WAY] == FOLLOWS:
             row[k, ARM] = (contacts.normal[c, 0] * dx + contacts.normal[c, 1] * dy) * row[k, PER_REACH]
         elif row[k, WAY] == COMING:
-            row[k, BOUNCE] = -1.0
             row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
     ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
     row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
@@ -433,15 +423,9 @@ def meet(work: FreeContactScratch, i: int, p: int, q: int, small: float) -> floa
     late = _time_until(wx, wy, ux, uy, -row[i, REACH])
     if not late < small:
         return math.inf
-    dx, dy = wx + late * ux, wy + late * uy
-    distance = math.sqrt(dx * dx + dy * dy)
-    if distance > SHORTEST:
-        row[i, NX] = dx / distance
-        row[i, NY] = dy / distance
-    row[i, GAP] = row[i, REACH] + row[i, NX] * wx + row[i, NY] * wy
-    row[i, ARM] = distance * row[i, PER_REACH]
     row[i, WAY] = FOLLOWS
     row[i, BOUNCE] = 0.0
+    look_at(work, i, late)
     return late
 
 
