@@ -56,8 +56,8 @@ class Islands(NamedTuple):
 
     label: Annotated[Slots, "particles"]  # the first particle of its island
     is_coupled: Annotated[Flags, "particles"]  # by label
-    contact_label: Annotated[Slots, "contacts"]  # by contact, as found
-    first: Annotated[Slots, "contacts + 1"]  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
+    contact_label: Annotated[Slots, "rows"]  # by contact, as found
+    first: Annotated[Slots, "rows + 1"]  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
     at: Annotated[Slots, "particles + 2"]  # scratch
 
 
@@ -71,42 +71,42 @@ class FreeContactScratch(NamedTuple):
     There is room for more contacts. What cannot move has a place for each contact.
     """
 
-    place: Annotated[SlotRows, "contacts, 2"]  # of a contact's particle and of what it pushes
-    level: Annotated[Slots, "contacts"]  # of a contact, as way
-    way: Annotated[Floats, "contacts"]
-    constraint: Annotated[FloatRows, f"contacts, {COLUMNS}"]  # see the columns
-    end: Annotated[SlotRows, "contacts, 2"]  # places of a constraint
-    contact: Annotated[Slots, "contacts"]  # that of a constraint
-    at: Annotated[Slots, "contacts + 1"]  # scratch, where each level goes on
-    begin: Annotated[Slots, "contacts + 1"]  # (g + 1,): first place of an island
-    steps: Annotated[Slots, "contacts"]  # (g,): small steps of an island
-    hardness: Annotated[Floats, "contacts"]  # (g,)
-    alone: Annotated[Flags, "contacts"]  # (g,): nothing is solved beside the island
-    allowed: Annotated[Floats, "contacts"]  # [J] (g,): energy that the island may end with
-    beside: Annotated[Slots, "contacts"]  # (g,): islands that are solved side by side
-    particle: Annotated[Slots, "2 * contacts"]  # that of a place
-    weight: Annotated[Floats, "2 * contacts"]  # [1/kg]
-    turning: Annotated[Floats, "2 * contacts"]  # [1/kg]: the weight of its surface
-    motion: Annotated[FloatRows, "2 * contacts, 8"]  # see the columns of a place
-    gain: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what forces add to the velocity in the step
-    highest: Annotated[Slots, "2 * contacts"]  # level so far
+    place: Annotated[SlotRows, "rows, 2"]  # of a contact's particle and of what it pushes
+    level: Annotated[Slots, "rows"]  # of a contact, as way
+    way: Annotated[Floats, "rows"]
+    constraint: Annotated[FloatRows, f"rows, {COLUMNS}"]  # see the columns
+    end: Annotated[SlotRows, "rows, 2"]  # places of a constraint
+    contact: Annotated[Slots, "rows"]  # that of a constraint
+    at: Annotated[Slots, "rows + 1"]  # scratch, where each level goes on
+    begin: Annotated[Slots, "rows + 1"]  # (g + 1,): first place of an island
+    steps: Annotated[Slots, "rows"]  # (g,): small steps of an island
+    hardness: Annotated[Floats, "rows"]  # (g,)
+    alone: Annotated[Flags, "rows"]  # (g,): nothing is solved beside the island
+    allowed: Annotated[Floats, "rows"]  # [J] (g,): energy that the island may end with
+    beside: Annotated[Slots, "rows"]  # (g,): islands that are solved side by side
+    particle: Annotated[Slots, "2 * rows"]  # that of a place
+    weight: Annotated[Floats, "2 * rows"]  # [1/kg]
+    turning: Annotated[Floats, "2 * rows"]  # [1/kg]: the weight of its surface
+    motion: Annotated[FloatRows, "2 * rows, 8"]  # see the columns of a place
+    gain: Annotated[FloatRows, "2 * rows, 2"]  # [m/s]: what forces add to the velocity in the step
+    highest: Annotated[Slots, "2 * rows"]  # level so far
     local: Annotated[Slots, "particles"]  # the place of a particle, -1: none
     ahead: Annotated[FloatRows, "particles, 2"]  # [m]: how much further than h v' a particle has gone in the step
-    added: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what forces and the last small step add in this one
-    stamp: Annotated[Slots, "2 * contacts"]  # the pass that it was hit in
-    since: Annotated[Floats, "2 * contacts"]  # [s]: when that was
-    hit: Annotated[Slots, "contacts"]  # the constraint of a hit; by hit, as all down to last
-    pushed: Annotated[Floats, "contacts"]  # [N s]: impulse along
-    across: Annotated[Floats, "contacts"]  # [N s]: impulse across
-    met: Annotated[Floats, "contacts"]  # [s]: when
-    speed: Annotated[Floats, "contacts"]  # [m/s]: along, before it
-    target: Annotated[Floats, "contacts"]  # [m/s]: along, after it
-    slip: Annotated[Floats, "contacts"]  # [m/s]: across, before it
-    last_across: Annotated[Floats, "contacts"]  # [N s]: across before the last friction
-    last: Annotated[Floats, "contacts"]  # [N s]: what pushed for that
-    first: Annotated[Floats, "2 * contacts"]  # [s]: when the first hit of a pass is
-    turned: Annotated[Floats, "2 * contacts"]  # [s]: when in a small step it met an edge that rises, 0: it has not
-    onto: Annotated[Slots, "2 * contacts"]  # the constraint with that edge
+    added: Annotated[FloatRows, "2 * rows, 2"]  # [m/s]: what forces and the last small step add in this one
+    stamp: Annotated[Slots, "2 * rows"]  # the pass that it was hit in
+    since: Annotated[Floats, "2 * rows"]  # [s]: when that was
+    hit: Annotated[Slots, "rows"]  # the constraint of a hit; by hit, as all down to last
+    pushed: Annotated[Floats, "rows"]  # [N s]: impulse along
+    across: Annotated[Floats, "rows"]  # [N s]: impulse across
+    met: Annotated[Floats, "rows"]  # [s]: when
+    speed: Annotated[Floats, "rows"]  # [m/s]: along, before it
+    target: Annotated[Floats, "rows"]  # [m/s]: along, after it
+    slip: Annotated[Floats, "rows"]  # [m/s]: across, before it
+    last_across: Annotated[Floats, "rows"]  # [N s]: across before the last friction
+    last: Annotated[Floats, "rows"]  # [N s]: what pushed for that
+    first: Annotated[Floats, "2 * rows"]  # [s]: when the first hit of a pass is
+    turned: Annotated[Floats, "2 * rows"]  # [s]: when in a small step it met an edge that rises, 0: it has not
+    onto: Annotated[Slots, "2 * rows"]  # the constraint with that edge
 
 
 @inlined_kernel
@@ -138,7 +138,6 @@ def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached:
             first = united(label, first, node)
     for p in range(label.shape[0]):
         label[p] = root_of(label, p)
-    for p in range(label.shape[0]):
         islands.is_coupled[p] = False
     for p in range(label.shape[0]):
         if attached[p] and inverse_mass[p] > 0.0:

@@ -197,17 +197,11 @@ def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
 
 
 @inner_kernel
-def _part_speed(gap: float, h: float) -> float:
-    # At what speed what penetrates is to part [m/s].
-    return min(max(0.0, -PENETRATION_SHARE * gap / h), FASTEST_PUSH)
-
-
-@inner_kernel
 def _stored(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> float:
     # What it costs to bring what penetrates to the velocity at which it is to part [J].
     if not (contacts.gap[c] < 0.0 and terms.normal[c] > 0.0):
         return 0.0
-    speed = _part_speed(contacts.gap[c], h)
+    speed = min(max(0.0, -PENETRATION_SHARE * contacts.gap[c] / h), FASTEST_PUSH)
     return 0.5 * speed * speed / terms.normal[c]
 
 

@@ -105,17 +105,16 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
     islands = new_tuple(BodyIslands, arena, bodies=bodies, particles=particles, members=members, rows=free_rows)
     set_field(out, "islands", islands)
     set_field(out, "lists", new_tuple(IslandLists, arena, islands=members))
-    place, point, block = new_slots(arena, particles), new_slots(arena, free_rows), new_slots(arena, particles)
-    delassus = out.delassus
-    set_field(delassus, "block", block)
-    set_field(delassus, "place", place)
-    set_field(delassus, "point", point)
-    set_field(delassus, "start", new_slots(arena, bodies + 1))
-    set_field(delassus, "base", new_slots(arena, bodies + 1))
+    given = out.delassus
+    delassus = new_tuple(
+        Delassus, arena, numbers=given.numbers, columns=given.columns, joints=given.joints, particles=particles,
+        blocks=bodies, rows=free_rows,
+    )  # fmt: skip
+    set_field(out, "delassus", delassus)
     if is_full(arena):
         return
     for p in range(particles):
-        islands.row[p] = islands.member[p] = block[p] = place[p] = -1
+        islands.row[p] = islands.member[p] = delassus.block[p] = delassus.place[p] = -1
     for row in range(free_rows):
         islands.row[system.rows.particle[row]] = row
 

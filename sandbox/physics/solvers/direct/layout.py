@@ -18,7 +18,7 @@ from sandbox.physics.arena import (
     new_slots,
     new_tuple,
 )
-from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.marks import LAW_NISSEN
@@ -51,8 +51,8 @@ from sandbox.physics.solvers.linear.fronts import Fronts, block_in_front, new_fr
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix, block_below, new_matrix
 from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import list_by_key, place_among, sort_by_key
-from sandbox.physics.untangling.jellies import Jellies, group_triangles
-from sandbox.physics.untangling.triangle_clamp import lay_out_collides, lay_out_triangles
+from sandbox.physics.untangling.jellies import Triangles, group_triangles
+from sandbox.physics.untangling.triangle_clamp import ClampedTriangles, count_with_gaps, fill_triangles
 
 # Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
@@ -96,15 +96,6 @@ class PlaceScratch(NamedTuple):
     order: Annotated[Slots, "longest"]
     items: Annotated[Slots, "longest"]
     start: Annotated[Slots, "rows + 1"]
-
-
-class SystemTriangles(NamedTuple):
-    """The constraints that are areas of three corners (t,), their rows (t, 3), and whether their forms run
-    counter-clockwise."""
-
-    constraint: Slots
-    row: SlotRows
-    is_left: Flags
 
 
 def tuning() -> Tuning:
@@ -408,45 +399,43 @@ def _place_constraints(
 @inner_kernel
 def lay_out_groups(state: State, arena: Arena, out: System) -> None:
     """Lay out the groups of a system's constraints, and its triangles."""
-    placed, count, rows = out.constraints, out.constraints.slot.shape[0], out.rows.particle.shape[0]
-    capacity = SystemTriangles(new_slots(arena, count), new_slot_rows(arena, count, 3), new_flags(arena, count))
+    placed, rows, count = out.constraints, out.rows, out.constraints.slot.shape[0]
+    constraint, corners, is_left = new_slots(arena, count), new_slot_rows(arena, count, 3), new_flags(arena, count)
     if is_full(arena):
         return
     areas = 0
     for k in range(count):
         if placed.kind[k] == AREA and placed.wide[k] < 0:
-            capacity.constraint[areas] = k
-            capacity.is_left[areas] = state.constraint_rest[placed.slot[k], 1] > 0.0
+            constraint[areas] = k
+            is_left[areas] = state.constraint_rest[placed.slot[k], 1] > 0.0
             for c in range(3):
-                capacity.row[areas, c] = placed.row[placed.first[k] + c]
+                corners[areas, c] = placed.row[placed.first[k] + c]
             areas += 1
-    found = SystemTriangles(capacity.constraint[:areas], capacity.row[:areas], capacity.is_left[:areas])
-    jellies = group_triangles(found.row, found.is_left, state.owner.shape[0], arena)
+    jellies = group_triangles(corners[:areas], is_left[:areas], state.owner.shape[0], arena)
+    found = Triangles(constraint[:areas], corners[:areas], jellies)
     groups = new_tuple(
         ShapeMatchGroups, arena, start=jellies.start, row=jellies.particle, inner=jellies.inner, fan=jellies.fan,
         fan_start=jellies.fan_start, bodies=out.bodies.lowest.shape[0], members=jellies.particle.shape[0],
         groups=jellies.first.shape[0], constraints=count,
     )  # fmt: skip
+    triangles = new_tuple(
+        ClampedTriangles, arena, rest=placed.rest, position=rows.position, velocity=rows.v, mass=rows.mass,
+        inverse_mass=rows.inverse_mass, inverted=groups.inverted, terrain=state.terrain,
+        triangles=count_with_gaps(found), rests=count, rows=rows.particle.shape[0],
+    )  # fmt: skip
     set_field(out, "shape_match_groups", groups)
-    lay_out_triangles(found.constraint, found.row, jellies, count, rows, arena, out.triangles)
-    lay_out_collides(found.row, state, out.rows.particle, arena, out.triangles)
-    if is_full(arena):
-        return
-    fill_groups(placed, out.bodies.constraint_start, found, jellies, state.corner_form, groups)
-    set_field(out.triangles, "rest", placed.rest)
-    set_field(out.triangles, "position", out.rows.position)
-    set_field(out.triangles, "velocity", out.rows.v)
-    set_field(out.triangles, "mass", out.rows.mass)
-    set_field(out.triangles, "inverse_mass", out.rows.inverse_mass)
-    set_field(out.triangles, "inverted", groups.inverted)
+    set_field(out, "triangles", triangles)
+    if not is_full(arena):
+        fill_triangles(found, state, rows.particle, arena, triangles)
+        fill_groups(placed, out.bodies.constraint_start, found, state.corner_form, groups)
 
 
 @inner_kernel
 def fill_groups(
-    placed: Constraints, constraint_start: Slots, found: SystemTriangles, jellies: Jellies, corner_form: FloatRows,
-    groups: ShapeMatchGroups,
-) -> None:  # fmt: skip
+    placed: Constraints, constraint_start: Slots, found: Triangles, corner_form: FloatRows, groups: ShapeMatchGroups
+) -> None:
     """Fill in where the groups lie and what their forms are; corner_form [m] (q, 2): of a world's corners."""
+    jellies = found.jellies
     for k in range(groups.group.shape[0]):
         groups.group[k] = -1
         for c in range(3):

@@ -174,7 +174,7 @@ def solve_linear(span: Span, system: System) -> None:
         assemble_springs_in_fronts(span, system)
         if constrained:
             assemble_constraints(span, system, True)
-        solve_fronts(False, span.first_row, span.last_row, fronts, rows.delta_v)
+        solve_fronts(False, span.last_row, fronts, rows.delta_v)
     else:
         for r in range(span.first_row, span.last_row):
             mass = rows.inertia[r]  # (9)
@@ -245,7 +245,7 @@ def _substitute(span: Span, system: System) -> None:
     # Without wide constraints.
     rows, fronts = system.rows, system.fronts
     if fronts.of_row[span.first_row] >= 0:
-        solve_fronts(True, span.first_row, span.last_row, fronts, rows.delta_v)
+        solve_fronts(True, span.last_row, fronts, rows.delta_v)
     else:
         back_substitute(span.first_row, span.last_row, system.matrix, rows.delta_v)
 

@@ -259,7 +259,8 @@ def _solve_linearly(
     islands = workspace.islands
     islands.tally[0, EXCESS] = 0.0
     for solve in range(LINEAR_SOLVES + MORE_SOLVES):
-        _solve_due(workspace, system, h)
+        for lane in parallel(min(LANES, islands.counts[BODIES]), _worth(islands, system)):
+            _solve_lane(lane, workspace, system, h)
         affordable = _push_and_test(contacts, workspace, system, state, start, affordable, solve == 0, h)
         fails = not passes(islands)
         islands.way[0] = SOLVED_ON if fails else islands.way[0]
@@ -272,16 +273,9 @@ def _solve_linearly(
 
 
 @inner_kernel
-def _solve_due(workspace: IslandWorkspace, system: System, h: float) -> None:
-    # Linearise and factor the bodies that are due: their velocities without contacts, and their Delassus blocks.
-    islands = workspace.islands
-    for lane in parallel(min(LANES, islands.counts[BODIES]), _worth(islands, system)):
-        _solve_lane(lane, workspace, system, h)
-
-
-@inner_kernel
 def _solve_lane(lane: int, workspace: IslandWorkspace, system: System, h: float) -> None:
-    # Every so many bodies of an island, which share the scratch of a lane.
+    # Linearise and factor those that are due of every so many bodies, which share the scratch of a lane: their
+    # velocities without contacts, and their Delassus blocks.
     islands, count = workspace.islands, workspace.islands.counts[BODIES]
     lanes, room = min(LANES, count), workspace.delassus.columns.shape[0] // min(LANES, count)
     columns = workspace.delassus.columns[lane * room : (lane + 1) * room]
