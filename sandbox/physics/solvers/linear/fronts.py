@@ -279,8 +279,8 @@ def subtract_pair(
 
 
 @inner_kernel
-def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: FloatRows) -> None:
-    """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
+def solve_fronts(factored: bool, last_row: int, fronts: Fronts, change: FloatRows) -> None:
+    """Solve for the rows of a body, up to last_row, of change (n, 2) in place; factors its fronts, unless they are."""
     body = fronts.of_row[last_row - 1]
     first, last = fronts.stages[body, 0], fronts.stages[body, 1]
     for stage in range(first, last):
