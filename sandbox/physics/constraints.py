@@ -18,7 +18,7 @@ import numpy as np
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int8s, Int32s
 from sandbox.physics.geometry.segment import SHORTEST, lengths, polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import State, StateArrays
+from sandbox.physics.state import GoodValues, State, StateArrays
 
 AREA = 0
 BEND = 1
@@ -208,6 +208,21 @@ def measure_rest(kind: int, form: FloatRows, first: int, last: int, rest: FloatR
     middle_x, middle_y = ax / a + bx / b, ay / a + by / b
     weight[first], weight[first + 2] = 1.0 / (a * a), 1.0 / (b * b)
     weight[first + 1] = middle_x * middle_x + middle_y * middle_y
+
+
+@inner_kernel
+def measure_constraint(state: State, good: GoodValues, k: int, factor: float) -> None:
+    """Measure the rest of a constraint by its form, as values to return to too; factor: area wanted over the form's."""
+    first = state.constraint_first[k]
+    last = first + state.constraint_corners[k]
+    rest, weight = state.constraint_rest, state.corner_weight
+    measure_rest(state.constraint_kind[k], state.corner_form, first, last, rest, k, weight)
+    if state.constraint_kind[k] == AREA:
+        rest[k, 0] *= factor
+    for axis in range(2):
+        good.constraint_rest[k, axis] = rest[k, axis]
+    for c in range(first, last):
+        good.corner_weight[c] = weight[c]
 
 
 @kernel

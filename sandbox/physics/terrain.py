@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,24 +43,24 @@ class Chain:
 class Terrain(NamedTuple):
     """Edges of all chains and the grid that finds them."""
 
-    vertex: FloatRows  # [m] (k, 2)
-    edge_a: Slots  # (e,): vertices, as edge_b
-    edge_b: Slots
-    solid: Slots  # (e,): where the ground lies on the left of the way from a to b
-    chain: Slots
-    friction: Floats
-    restitution: Floats
-    belt: Floats  # [m/s]: see Chain
-    corner: Floats  # [m] (2,): of the grid
-    cell: Floats  # [m] (1,)
-    size: Slots  # (2,): columns, rows
-    cell_start: Slots
-    cell_edge: Slots  # edges of cell c, row by row: cell_edge[cell_start[c]:cell_start[c + 1]]
-    tip: Slots  # (t,): vertices that stand out, which an edge of a body can hit: no seams, no hollows
-    way_start: Slots
-    way: FloatRows  # of length 1: the ways along all terrain that begins at tip i: way[way_start[i]:way_start[i + 1]]
-    tip_start: Slots
-    cell_tip: Slots  # places in tip by cell: cell_tip[tip_start[c]:tip_start[c + 1]]
+    vertex: Annotated[FloatRows, "vertices, 2"]  # [m] (k, 2)
+    edge_a: Annotated[Slots, "edges"]  # (e,): vertices, as edge_b
+    edge_b: Annotated[Slots, "edges"]
+    solid: Annotated[Slots, "edges"]  # (e,): where the ground lies on the left of the way from a to b
+    chain: Annotated[Slots, "edges"]
+    friction: Annotated[Floats, "edges"]
+    restitution: Annotated[Floats, "edges"]
+    belt: Annotated[Floats, "edges"]  # [m/s]: see Chain
+    corner: Annotated[Floats, "2"]  # [m] (2,): of the grid
+    cell: Annotated[Floats, "1"]  # [m] (1,)
+    size: Annotated[Slots, "2"]  # (2,): columns, rows
+    cell_start: Annotated[Slots, "cells + 1"]
+    cell_edge: Annotated[Slots, "entries"]  # edges of cell c, row by row: cell_edge[cell_start[c]:cell_start[c + 1]]
+    tip: Annotated[Slots, "tips"]  # vertices that stand out, which an edge of a body can hit: no seams, no hollows
+    way_start: Annotated[Slots, "tips + 1"]
+    way: Annotated[FloatRows, "ways, 2"]  # of length 1, along terrain from tip i on: way[way_start[i]:way_start[i + 1]]
+    tip_start: Annotated[Slots, "cells + 1"]
+    cell_tip: Annotated[Slots, "tips"]  # places in tip by cell: cell_tip[tip_start[c]:tip_start[c + 1]]
 
 
 @inner_kernel

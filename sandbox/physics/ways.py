@@ -197,7 +197,7 @@ def follow_hits(
             _turn_bodies(ways, colliders, solid_of, state, start, label)
         for p in range(flight.shape[0]):
             if flight[p, SOONEST] < math.inf:
-                _meet_next(ways, p, contacts, state, start)
+                _meet_next(ways, p, contacts, start)
 
 
 @inner_kernel
@@ -269,7 +269,7 @@ def _time_of(
 
 
 @inner_kernel
-def _meet_next(ways: Ways, p: int, contacts: Contacts, state: State, start: FloatRows) -> None:
+def _meet_next(ways: Ways, p: int, contacts: Contacts, start: FloatRows) -> None:
     # Lead a particle to what it meets next, and turn it there.
     flight, c = ways.flight, ways.hit[p]
     late = flight[p, SOONEST]

@@ -13,7 +13,7 @@ from sandbox.physics.arena import FIRST_ARENA, Arena, begin, lay_out
 from sandbox.physics.arrays import Floats, Slots, with_empty
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
-from sandbox.physics.jit import Bundle, bundle, items_of, kernel, unpack
+from sandbox.physics.jit import Bundle, bundle, items_of, kernel, set_field, unpack
 from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
@@ -23,7 +23,7 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct.system import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.water.displacers import FLOW_X, FLOW_Y, Water, lay_out_water
+from sandbox.physics.water.displacers import FLOW_X, FLOW_Y, Water, new_water
 from sandbox.physics.water.lift import ABOVE_ALL, add_energies
 from sandbox.physics.world import World
 
@@ -234,7 +234,7 @@ class WaterPlace(NamedTuple):
 def _derive_water(pointer: Bundle[WaterPlace], arena: Arena) -> None:
     place = unpack(pointer)
     begin(arena)
-    lay_out_water(place.state, arena, place.water)
+    set_field(place, "water", new_water(place.state, place.water, arena))
 
 
 @kernel

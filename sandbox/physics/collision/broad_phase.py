@@ -224,8 +224,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
                 here = cell_number(column, row)
                 # Boxes that share many cells are found in the first of them alone.
                 seen = (0 if column == left else 1) + (0 if row == bottom else 2)
-                for at in range(grid.start[bucket], grid.start[bucket + 1]):
-                    entry = at
+                for entry in range(grid.start[bucket], grid.start[bucket + 1]):
                     found = grid.object[entry]
                     k = found >> 2
                     if (

@@ -211,9 +211,11 @@ def collide_edges(
         if seen:
             continue
         # Where an outline is folded, the edge that is nearest by itself can be seen from behind outside.
-        behind = owner != colliders.owner[p] and _is_behind(p, nearest, colliders, near)
+        e = near.edge[nearest]
+        behind = owner != colliders.owner[p] and colliders.side[e] != 0
+        behind = behind and is_behind(p, e, near.signed[nearest], near.region[nearest], colliders)
         if behind and is_in(p, owner, solid, bounds, colliders):
-            count = push_out(p, near.edge[nearest], near.share[nearest], near.distance[nearest],
+            count = push_out(p, e, near.share[nearest], near.distance[nearest],
                              near.region[nearest], colliders, dynamic, contacts, count)  # fmt: skip
         else:
             count = _collide_outside(
@@ -256,7 +258,7 @@ def _collide_later(
         if met < 0:
             return count
         a = colliders.edge_a[met]
-        if not _is_known(p, met, begun, count, dynamic, colliders, contacts):
+        if not _is_known(met, begun, count, dynamic, colliders, contacts):
             px = colliders.position[p, 0] - place_on(met, met_share, 0, colliders)
             py = colliders.position[p, 1] - place_on(met, met_share, 1, colliders)
             gap = px * met_x + py * met_y - colliders.radius[p] - colliders.radius[a]
@@ -271,8 +273,8 @@ def _collide_later(
 
 
 @inner_kernel
-def _is_known(p: int, e: int, begun: int, count: int, dynamic: int, colliders: Colliders, contacts: Contacts) -> bool:
-    # Whether a particle has a contact with that edge already.
+def _is_known(e: int, begun: int, count: int, dynamic: int, colliders: Colliders, contacts: Contacts) -> bool:
+    # Whether the particle whose contacts begin there has one with that edge already.
     feature = KINDS * colliders.number[e] + (EDGE if e < dynamic else TERRAIN)
     known = False
     for c in range(begun, min(count, contacts.particle.shape[0])):
@@ -339,14 +341,6 @@ def leave_out(owner: int, colliders: Colliders, near: Near, edges: int) -> int:
             near.region[left] = near.region[i]
             left += 1
     return left
-
-
-@inner_kernel
-def _is_behind(p: int, i: int, colliders: Colliders, near: Near) -> bool:
-    e = near.edge[i]
-    if colliders.side[e] == 0:
-        return False
-    return is_behind(p, e, near.signed[i], near.region[i], colliders)
 
 
 @inner_kernel

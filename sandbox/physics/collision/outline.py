@@ -7,18 +7,7 @@ is bent, and the edges of which both ends are pinned: terrain of their own, as t
 import math
 from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import (
-    Arena,
-    give_back,
-    is_full,
-    mark,
-    new_flags,
-    new_float_rows,
-    new_floats,
-    new_slot_rows,
-    new_slots,
-    new_tuple,
-)
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.segment import SHORTEST
@@ -47,10 +36,10 @@ class CloseEdges(NamedTuple):
     of the form are farther apart than this; 0: not known.
     """
 
-    start: Slots
-    edge: SlotRows
-    distance: Floats
-    beyond: Floats
+    start: Annotated[Slots, "shapes + 1"]
+    edge: Annotated[SlotRows, "room, 2"]
+    distance: Annotated[Floats, "room"]
+    beyond: Annotated[Floats, "shapes"]
 
 
 class FormEdges(NamedTuple):
@@ -124,7 +113,7 @@ def new_outline(state: State, arena: Arena) -> Outline:
     vertices = particles + state.terrain.vertex.shape[0]
     room = new_tuple(
         Outline, arena, every=springs + state.terrain.edge_a.shape[0], particles=particles, springs=springs,
-        vertices=vertices, close=_no_close_edges(arena), pins=_no_pins(arena),
+        vertices=vertices, shapes=0, room=0, pins=_new_pins(0, arena),
     )  # fmt: skip
     counts = new_slots(arena, COUNTS)
     start, longest = mark(arena), max(vertices, 2 * springs)
@@ -175,9 +164,8 @@ def _rank_owners(state: State, owner: Slots, work: OutlineScratch) -> int:
     for v in range(particles, owner.shape[0]):
         owner[v] = 0
     for e in range(state.terrain.edge_a.shape[0]):
-        owner[particles + state.terrain.edge_a[e]] = TERRAIN_OWNER - state.terrain.chain[e]
-    for e in range(state.terrain.edge_b.shape[0]):
-        owner[particles + state.terrain.edge_b[e]] = TERRAIN_OWNER - state.terrain.chain[e]
+        a, b = particles + state.terrain.edge_a[e], particles + state.terrain.edge_b[e]
+        owner[a] = owner[b] = TERRAIN_OWNER - state.terrain.chain[e]
     for v in range(owner.shape[0]):
         work.one[v] = v
     sort_by_value(owner, work.one, 0, owner.shape[0], work.other)
@@ -321,12 +309,10 @@ def close_edges(form: FloatRows, a: Slots, b: Slots, shape: Slots, solid_of: Slo
     """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
     edges, shapes = a.shape[0], solid_of.shape[0]
     if edges == 0:
-        return _no_close_edges(arena)
+        return new_tuple(CloseEdges, arena, shapes=0, room=0)
     longest, room = min(edges, MOST_EDGES), KEPT * edges
     pairs = max(longest * longest // 2, CLASSES)
-    found = CloseEdges(
-        new_slots(arena, shapes + 1), new_slot_rows(arena, room, 2), new_floats(arena, room), new_floats(arena, shapes)
-    )
+    found = new_tuple(CloseEdges, arena, shapes=shapes, room=room)
     start = mark(arena)
     work = new_tuple(PairScratch, arena, edges=edges, shapes=shapes, pairs=pairs)
     if is_full(arena):
@@ -334,12 +320,6 @@ def close_edges(form: FloatRows, a: Slots, b: Slots, shape: Slots, solid_of: Slo
     count = _find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
     give_back(arena, start)
     return CloseEdges(found.start, found.edge[:count], found.distance[:count], found.beyond)
-
-
-@inner_kernel
-def _no_close_edges(arena: Arena) -> CloseEdges:
-    """Lay out an empty list of close edges."""
-    return CloseEdges(new_slots(arena, 1), new_slot_rows(arena, 0, 2), new_floats(arena, 0), new_floats(arena, 0))
 
 
 @inner_kernel
@@ -453,7 +433,7 @@ def pinned_edges(state: State, edge_a: Slots, edge_b: Slots, side: Slots, arena:
     count = _find_pinned(state, edge_a, edge_b, side, found, work)
     give_back(arena, start)
     if count == 0:
-        return _no_pins(arena)
+        return _new_pins(0, arena)
     cells, entries = found.size[0] * found.size[1], 4 * count
     cell_start, tip_start = new_slots(arena, cells + 1), new_slots(arena, cells + 1)
     found = _with_cells(found, count, cell_start, new_slots(arena, entries), tip_start)
@@ -469,28 +449,12 @@ def pinned_edges(state: State, edge_a: Slots, edge_b: Slots, side: Slots, arena:
 
 
 @inner_kernel
-def _no_pins(arena: Arena) -> Terrain:
-    """Lay out pinned edges for a world that has none."""
-    none, nothing = new_slots(arena, 0), new_float_rows(arena, 0, 2)
-    pins = Terrain(
-        nothing, none, none, none, none, new_floats(arena, 0), new_floats(arena, 0), new_floats(arena, 0),
-        new_floats(arena, 2), new_floats(arena, 1), new_slots(arena, 2), new_slots(arena, 1), none, none,
-        new_slots(arena, 1), nothing, new_slots(arena, 1), none,
-    )  # fmt: skip
+def _new_pins(edges: int, arena: Arena) -> Terrain:
+    # Room for so many pinned edges, in no cells yet.
+    pins = new_tuple(Terrain, arena, vertices=2 * edges, edges=edges, cells=0, entries=0, tips=0, ways=0)
     if not is_full(arena):
         pins.cell[0] = 1.0
     return pins
-
-
-@inner_kernel
-def _new_pins(edges: int, arena: Arena) -> Terrain:
-    none = _no_pins(arena)
-    return Terrain(
-        new_float_rows(arena, 2 * edges, 2), new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, edges),
-        new_slots(arena, edges), new_floats(arena, edges), new_floats(arena, edges), new_floats(arena, edges),
-        none.corner, none.cell, none.size, none.cell_start, none.cell_edge, none.tip, none.way_start, none.way,
-        none.tip_start, none.cell_tip,
-    )  # fmt: skip
 
 
 @inner_kernel
@@ -542,13 +506,10 @@ def new_colliders(terrain: Terrain, outline: Outline, pairs: int, arena: Arena) 
     pairs: room for this many pairs of shapes that are separated.
     """
     total = outline.owner.shape[0]
-    colliders = Colliders(
-        new_float_rows(arena, total, 2), new_float_rows(arena, total, 2), new_float_rows(arena, total, 2),
-        new_floats(arena, total), new_floats(arena, total), new_floats(arena, total), outline.owner,
-        new_slots(arena, total), new_slots(arena, total), new_floats(arena, total), new_floats(arena, total),
-        new_floats(arena, total), outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
-        outline.edge_of, outline.near_start, outline.near_of, outline.shielded, new_flags(arena, total), outline.shape,
-        new_flags(arena, total), new_flags(arena, total), new_slot_rows(arena, pairs, 3), new_slots(arena, 1),
+    colliders = new_tuple(
+        Colliders, arena, owner=outline.owner, edge_a=outline.edge_a, edge_b=outline.edge_b, side=outline.side,
+        number=outline.number, edge_start=outline.edge_start, edge_of=outline.edge_of, near_start=outline.near_start,
+        near_of=outline.near_of, shielded=outline.shielded, shape=outline.shape, vertices=total, pairs=pairs,
     )  # fmt: skip
     if not is_full(arena):
         _fill_in_terrain(terrain, colliders)

@@ -17,7 +17,7 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, Slots
 from sandbox.physics.components import join, root_of
-from sandbox.physics.constraints import AREA, measure_rest
+from sandbox.physics.constraints import AREA, measure_constraint
 from sandbox.physics.geometry.segment import doubled_area_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_MATERIAL, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
@@ -162,13 +162,7 @@ def _halve_other_way(state: State, good: GoodValues, k: int, start: Slots, liste
         _place_corner(state, good, at + 1, x if t == 0 else d, xx if t == 0 else dx, xy if t == 0 else dy)
         _place_corner(state, good, at + 2, d if t == 0 else y, dx if t == 0 else yx, dy if t == 0 else yy)
         # What a triangle keeps from now on, as its form has it.
-        rest = state.constraint_rest
-        measure_rest(AREA, state.corner_form, at, at + TRIANGLE_CORNERS, rest, k + t, state.corner_weight)
-        rest[k + t, 0] *= inflation
-        for axis in range(2):
-            good.constraint_rest[k + t, axis] = rest[k + t, axis]
-        for c in range(at, at + TRIANGLE_CORNERS):
-            good.corner_weight[c] = state.corner_weight[c]
+        measure_constraint(state, good, k + t, inflation)
         state.constraint_active[k + t] = is_one if t == 0 else is_two
 
 

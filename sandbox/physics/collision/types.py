@@ -16,18 +16,18 @@ ENDS = 5
 class Colliders(NamedTuple):
     """Everything that can collide: particles, then vertices of terrain; edges between those, then edges of terrain."""
 
-    position: FloatRows  # [m], by vertex, as all down to rolling
-    velocity: FloatRows  # [m/s]
-    origin: FloatRows  # [m]: where it was created
-    radius: Floats  # [m]
-    friction: Floats
-    restitution: Floats
+    position: Annotated[FloatRows, "vertices, 2"]  # [m], by vertex, as all down to rolling
+    velocity: Annotated[FloatRows, "vertices, 2"]  # [m/s]
+    origin: Annotated[FloatRows, "vertices, 2"]  # [m]: where it was created
+    radius: Annotated[Floats, "vertices"]  # [m]
+    friction: Annotated[Floats, "vertices"]
+    restitution: Annotated[Floats, "vertices"]
     owner: Slots
-    group: Slots
-    collides: Slots
-    inverse_mass: Floats  # [1/kg]
-    turning: Floats  # [1/kg]: the weight of its surface (surfaces.py), 0: it does not turn
-    rolling: Floats
+    group: Annotated[Slots, "vertices"]
+    collides: Annotated[Slots, "vertices"]
+    inverse_mass: Annotated[Floats, "vertices"]  # [1/kg]
+    turning: Annotated[Floats, "vertices"]  # [1/kg]: the weight of its surface (surfaces.py), 0: it does not turn
+    rolling: Annotated[Floats, "vertices"]
     edge_a: Slots  # by edge, as the three below
     edge_b: Slots
     side: Slots  # 1: solid on the left, 0: two sides
@@ -37,12 +37,12 @@ class Colliders(NamedTuple):
     near_start: Slots
     near_of: Slots  # particles that a spring joins to p: likewise
     shielded: Flags  # (n,): see Outline
-    inverted: Flags  # by vertex: its body is inverted or wound, and so does not touch itself
+    inverted: Annotated[Flags, "vertices"]  # by vertex: its body is inverted or wound, and so does not touch itself
     shape: Slots  # by vertex: see Outline
-    parting: Flags  # by vertex: its shape and another, one of them solid, part here
-    caught: Flags  # the same of two lines, or of one with itself
-    parted: SlotRows  # (k, 3): pairs of shapes that part, the lower first, and 1 where both are lines
-    parted_count: Slots  # (1,)
+    parting: Annotated[Flags, "vertices"]  # by vertex: its shape and another, one of them solid, part here
+    caught: Annotated[Flags, "vertices"]  # the same of two lines, or of one with itself
+    parted: Annotated[SlotRows, "pairs, 3"]  # pairs of shapes that part, the lower first, and 1 where both are lines
+    parted_count: Annotated[Slots, "1"]  # (1,)
 
 
 class Near(NamedTuple):

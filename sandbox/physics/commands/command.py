@@ -123,7 +123,7 @@ def command(pointer: Bundle[Commanded], arena: Arena, giver: int, kind: int, slo
     bad = _first_bad(world, kind, slots, numbers)
     if bad >= 0:
         return _refused(BAD, bad)
-    result = _unfit(state, kind, slots, numbers)
+    result = _unfit(state, kind, slots)
     if result == 0 and kind == CUT:
         needs = _different(slots, state.law.shape[0], arena)
         result = NO_ARENA if needs < 0 else 0
@@ -213,7 +213,7 @@ def _first_bad_choice(slots: Slots) -> int:
 
 
 @inner_kernel
-def _unfit(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
+def _unfit(state: State, kind: int, slots: Slots) -> int:
     # Why what is there cannot be done to as it is; 0: it can.
     if kind in (GRAB, MOVE_GRAB, RELEASE):
         holds = state.spring_active[slots[1] + slots[2]]

@@ -13,17 +13,10 @@ from sandbox.physics.arena import NO_ARENA, Arena, is_full, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.pieces import TRIANGLE_CORNERS, is_whole_triangle, mark_torn
 from sandbox.physics.commands.kept_motion import motion_of, settle_motion
-from sandbox.physics.constraints import AREA, measure_rest
+from sandbox.physics.constraints import AREA, measure_constraint
 from sandbox.physics.geometry.segment import polygon_area
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.marks import (
-    GRAB_MATERIAL,
-    MOST_PARTICLES,
-    MOST_SPRINGS,
-    NO_EDGE,
-    SOLID_LEFT,
-    SOLID_RIGHT,
-)
+from sandbox.physics.marks import GRAB_MATERIAL, MOST_PARTICLES, MOST_SPRINGS, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.meshing.splitting import (
     TRIANGLES,
     VERTICES,
@@ -130,7 +123,8 @@ def _find_near(state: State, springs: Slots, numbers: Floats, work: LineScratch)
     for k in range(state.constraint_kind.shape[0]):
         first = state.constraint_first[k]
         for c in range(3 if is_whole_triangle(state, k) else 0):
-            s = _cut_between(state, work, state.corner_particle[first + c], state.corner_particle[first + (c + 1) % 3])
+            p, q = state.corner_particle[first + c], state.corner_particle[first + (c + 1) % 3]
+            s = _spring_between(state, work, p, q, True)
             work.spring[k] = s + 1 if s >= 0 else work.spring[k]
         if work.spring[k] > 0:
             divided += 1
@@ -177,22 +171,14 @@ def _is_border(state: State, s: int) -> bool:
 
 
 @inner_kernel
-def _cut_between(state: State, work: LineScratch, p: int, q: int) -> int:
-    # The spring that is cut between two particles; -1: none.
+def _spring_between(state: State, work: LineScratch, p: int, q: int, is_cut: bool) -> int:
+    # The spring that is cut between two particles, or acts on there; -1: none.
     for at in range(work.start[p], work.start[p + 1]):
         s = work.listed[at]
-        if work.share[s] >= 0.0 and state.spring_active[s] and q in (state.particle_a[s], state.particle_b[s]):
+        is_such = state.spring_active[s] and (work.share[s] >= 0.0) == is_cut
+        if is_such and q in (state.particle_a[s], state.particle_b[s]):
             return s
     return -1
-
-
-@inner_kernel
-def _acting_between(state: State, work: LineScratch, p: int, q: int) -> bool:
-    for at in range(work.start[p], work.start[p + 1]):
-        s = work.listed[at]
-        if work.share[s] < 0.0 and state.spring_active[s] and q in (state.particle_a[s], state.particle_b[s]):
-            return True
-    return False
 
 
 @inner_kernel
@@ -269,7 +255,7 @@ def _is_fixed(state: State, work: LineScratch, p: int) -> bool:
 @inner_kernel
 def _middle(state: State, work: LineScratch, mesh: SplitMesh, p: int, q: int) -> int:
     # The vertex where the spring between two particles is cut; -1: it is not.
-    s = _cut_between(state, work, p, q)
+    s = _spring_between(state, work, p, q, True)
     if s < 0:
         return -1
     if work.middle[s] == 0:
@@ -306,7 +292,7 @@ def _needs_spring(state: State, work: LineScratch, mesh: SplitMesh, t: int, k: i
     if not _is_first_side(mesh, t, k):
         return False
     p, q = mesh.row[mesh.corner[t, k]], mesh.row[mesh.corner[t, (k + 1) % 3]]
-    return not (0 <= p < new and 0 <= q < new and _acting_between(state, work, p, q))
+    return not (0 <= p < new and 0 <= q < new and _spring_between(state, work, p, q, False) >= 0)
 
 
 @inner_kernel
@@ -338,7 +324,7 @@ def _write(
         for axis in range(2):
             work.velocity[p, axis], work.origin[p, axis] = state.velocity[p, axis], state.origin[p, axis]
     motion = motion_of(state, work.torn)
-    _give_rows(state, work, mesh, new)
+    _give_rows(work, mesh, new)
     _write_springs(state, good, work, mesh, state.law.shape[0] - links, new)
     _stretch_springs(state, good, work, mesh, state.law.shape[0] - links)
     _write_particles(state, good, work, mesh, new)
@@ -348,7 +334,7 @@ def _write(
 
 
 @inner_kernel
-def _give_rows(state: State, work: LineScratch, mesh: SplitMesh, new: int) -> None:
+def _give_rows(work: LineScratch, mesh: SplitMesh, new: int) -> None:
     # Give new vertices their particles, and find those that moved.
     row = new
     for t in range(mesh.counts[TRIANGLES]):
@@ -510,7 +496,7 @@ def _write_areas(state: State, good: GoodValues, work: LineScratch, mesh: SplitM
             for axis in range(2):
                 place = mesh.form[mesh.corner[t, c], axis]
                 state.corner_form[first + c, axis] = good.corner_form[first + c, axis] = place
-        _measure(state, good, k, work.factor[source])
+        measure_constraint(state, good, k, work.factor[source])
         now[k] = work.factor_now[source] * rest[k, 1]
     for k in range(rest.shape[0] - count):
         # What is left of no triangle has none of its corners.
@@ -534,21 +520,6 @@ def _copy_constraint(state: State, good: GoodValues, source: int, k: int) -> Non
 
 
 @inner_kernel
-def _measure(state: State, good: GoodValues, k: int, factor: float) -> None:
-    # The rest of a constraint from its form; factor: what it wants, as a multiple of its form's area.
-    first = state.constraint_first[k]
-    last = first + state.constraint_corners[k]
-    rest, weight = state.constraint_rest, state.corner_weight
-    measure_rest(state.constraint_kind[k], state.corner_form, first, last, rest, k, weight)
-    if state.constraint_kind[k] == AREA:
-        rest[k, 0] *= factor
-    for axis in range(2):
-        good.constraint_rest[k, axis] = rest[k, axis]
-    for c in range(first, last):
-        good.corner_weight[c] = weight[c]
-
-
-@inner_kernel
 def _stretch_constraints(state: State, good: GoodValues, work: LineScratch, mesh: SplitMesh) -> None:
     # What is not divided and has corners that moved.
     for k in range(work.spring.shape[0]):
@@ -564,6 +535,6 @@ def _stretch_constraints(state: State, good: GoodValues, work: LineScratch, mesh
         if is_moved:
             before, rest = state.constraint_rest[k, 1], state.constraint_rest
             is_area = state.constraint_kind[k] == AREA and before != 0.0
-            _measure(state, good, k, rest[k, 0] / before if is_area else 1.0)
+            measure_constraint(state, good, k, rest[k, 0] / before if is_area else 1.0)
             if is_area:
                 state.constraint_area_now[k] *= rest[k, 1] / before

@@ -18,7 +18,7 @@ Another kind of joint makes its rows in `joint_set.py` and fills in their number
 import math
 from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots
+from sandbox.physics.arena import Arena, is_full, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
@@ -44,18 +44,18 @@ class JointRows(NamedTuple):
 class Actions(NamedTuple):
     """The nodes that rows act on, each a body or a particle in none; an action is that of one row on one node."""
 
-    start: Slots  # particles of node q: particle[start[q]:start[q + 1]],
-    particle: Slots  # those of a body in the order of the matrix
-    body: Slots  # (q,): its number, -1: a particle
-    node: Slots  # by particle (n,), -1: none
-    place: Slots  # by particle (n,): its place in its node
-    first: Slots  # actions of row k: first[k] to first[k + 1]
-    row: Slots  # by action
-    on: Slots  # by action: its node
-    answers: Slots  # by action: where those of the node's particles begin
-    entry: Slots  # by entry of rows: its action
-    at_first: Slots
-    at: Slots  # actions on node q: at[at_first[q]:at_first[q + 1]]
+    start: Annotated[Slots, "entries + 1"]  # particles of node q: particle[start[q]:start[q + 1]],
+    particle: Annotated[Slots, "particles"]  # those of a body in the order of the matrix
+    body: Annotated[Slots, "entries"]  # (q,): its number, -1: a particle
+    node: Annotated[Slots, "particles"]  # by particle (n,), -1: none
+    place: Annotated[Slots, "particles"]  # by particle (n,): its place in its node
+    first: Annotated[Slots, "count + 1"]  # actions of row k: first[k] to first[k + 1]
+    row: Annotated[Slots, "entries"]  # by action
+    on: Annotated[Slots, "entries"]  # by action: its node
+    answers: Annotated[Slots, "entries + 1"]  # by action: where those of the node's particles begin
+    entry: Annotated[Slots, "entries"]  # by entry of rows: its action
+    at_first: Annotated[Slots, "entries + 1"]
+    at: Annotated[Slots, "entries"]  # actions on node q: at[at_first[q]:at_first[q + 1]]
 
 
 class Couplings(NamedTuple):
@@ -77,12 +77,12 @@ class Joints(NamedTuple):
     rows: JointRows
     actions: Actions
     couplings: Couplings
-    listed: Slots  # the rows that are swept, ascending; as long as there are rows
-    answer: FloatRows  # (a, 2): velocities by a unit impulse, see Actions
-    velocity: Floats  # (k,): u; scratch of a step, as all below
-    last_impulse: Floats  # (k,): as that of contacts
-    search_direction: Floats  # (k,): likewise
-    push: FloatRows  # (n, 2) [N s]: what the joints together give each particle
+    listed: Annotated[Slots, "count"]  # the rows that are swept, ascending; as long as there are rows
+    answer: Annotated[FloatRows, "answered, 2"]  # (a, 2): velocities by a unit impulse, see Actions
+    velocity: Annotated[Floats, "count"]  # (k,): u; scratch of a step, as all below
+    last_impulse: Annotated[Floats, "count"]  # (k,): as that of contacts
+    search_direction: Annotated[Floats, "count"]  # (k,): likewise
+    push: Annotated[FloatRows, "particles, 2"]  # (n, 2) [N s]: what the joints together give each particle
 
 
 @inner_kernel
@@ -132,12 +132,7 @@ def new_joints(rows: JointRows, particle: Slots, row_of: Slots, row_start: Slots
     particles = row_of.shape[0]
     acted_on = particles if entries > 0 else 0
     last = new_slots(arena, entries)
-    actions = Actions(
-        new_slots(arena, entries + 1), new_slots(arena, acted_on), new_slots(arena, entries),
-        new_slots(arena, acted_on), new_slots(arena, acted_on), new_slots(arena, count + 1),
-        new_slots(arena, entries), new_slots(arena, entries), new_slots(arena, entries + 1),
-        new_slots(arena, entries), new_slots(arena, entries + 1), new_slots(arena, entries),
-    )  # fmt: skip
+    actions = new_tuple(Actions, arena, particles=acted_on, count=count, entries=entries)
     if not is_full(arena):
         nodes = _find_nodes(rows, particle, row_of, row_start, actions)
         _find_actions(rows, nodes, last, actions)
@@ -149,9 +144,9 @@ def new_joints(rows: JointRows, particle: Slots, row_of: Slots, row_start: Slots
     if not is_full(arena):
         _list_couplings(actions, couplings, seen, slot)
     answers = actions.answers[entries] if not is_full(arena) else 0
-    return Joints(
-        rows, actions, couplings, new_slots(arena, count), new_float_rows(arena, answers, 2), new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, particles if count > 0 else 0, 2),
+    return new_tuple(
+        Joints, arena, rows=rows, actions=actions, couplings=couplings, count=count, answered=answers,
+        particles=particles if count > 0 else 0,
     )  # fmt: skip
 
 
@@ -259,10 +254,10 @@ def joints_by_mass(rows: JointRows, arena: Arena) -> Joints:
             first[k + 1] = first[k] + before + 1 + after
             for j in range(k - before, k + after + 1):
                 couplings.row[couplings.own[k] + j - k] = j
-    return Joints(
-        rows, Actions(none, none, none, none, none, none, none, none, none, none, none, none), couplings, listed,
-        new_float_rows(arena, 0, 2), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_float_rows(arena, 0, 2),
+    actions = Actions(none, none, none, none, none, none, none, none, none, none, none, none)
+    return new_tuple(
+        Joints, arena, rows=rows, actions=actions, couplings=couplings, listed=listed, count=count, answered=0,
+        particles=0,
     )  # fmt: skip
 
 

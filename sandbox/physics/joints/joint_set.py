@@ -8,7 +8,7 @@ heavy one would swing ever wider. Hands are in hands.py.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import Arena, is_full, new_flags, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, Floats, Slots
@@ -82,12 +82,12 @@ class MotorSides(NamedTuple):
     By particle, scratch: label, of what springs join; on_rim; at_hub, what springs join to the hub; turns, by label.
     """
 
-    first: Slots
-    particle: Slots
-    label: Slots
-    on_rim: Flags
-    at_hub: Flags
-    turns: Flags
+    first: Annotated[Slots, "2 * motors + 1"]
+    particle: Annotated[Slots, "room"]
+    label: Annotated[Slots, "particles"]
+    on_rim: Annotated[Flags, "particles"]
+    at_hub: Annotated[Flags, "particles"]
+    turns: Annotated[Flags, "particles"]
 
 
 class JointSet(NamedTuple):
@@ -286,10 +286,7 @@ def new_motor_sides(state: State, wheels: DrivenWheels, arena: Arena) -> MotorSi
     """
     particles, count = state.owner.shape[0], wheels.hub.shape[0]
     capacity = particles if count > 0 else 0
-    sides = MotorSides(
-        new_slots(arena, 2 * count + 1), new_slots(arena, capacity), new_slots(arena, capacity),
-        new_flags(arena, capacity), new_flags(arena, capacity), new_flags(arena, capacity),
-    )  # fmt: skip
+    sides = new_tuple(MotorSides, arena, motors=count, particles=capacity, room=capacity)
     if count == 0 or is_full(arena):
         return sides
     needed = list_motor_sides(state, wheels, sides)

@@ -4,7 +4,7 @@ import bisect
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,11 +46,11 @@ class StiffForm(NamedTuple):
     pairs (m, 2); areas and bends (t, 3).
     """
 
-    points: FloatRows
-    mass: Floats
-    pairs: SlotRows
-    areas: SlotRows
-    bends: SlotRows
+    points: Annotated[FloatRows, "particles, 2"]
+    mass: Annotated[Floats, "particles"]
+    pairs: Annotated[SlotRows, "springs, 2"]
+    areas: Annotated[SlotRows, "triangles, 3"]
+    bends: Annotated[SlotRows, "turns, 3"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.commands.changes import is_body
 from sandbox.physics.commands.command import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, Commanded, denied, refusal, spend
-from sandbox.physics.constraints import AREA, BEND, measure_rest
+from sandbox.physics.constraints import AREA, BEND, measure_constraint
 from sandbox.physics.driving import Drives, contract
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.joints.joint_set import DrivenWheels
@@ -124,7 +124,7 @@ def join(
     _add_springs(state, good, slots, numbers, work)
     _add_constraints(state, good, slots, numbers, work.at)
     _add_drives(state, good, world.drives, world.commanded.choices, slots, numbers, work.at)
-    _add_motors(state, world.wheels, slots, numbers, work.at)
+    _add_motors(world.wheels, slots, numbers, work.at)
     _add_hulls(world.water, slots, work.at)
     _add_limits(world.limits, world.drives, slots, numbers, work.at)
     spend(state, giver, kind, 1)
@@ -259,14 +259,10 @@ def _add_constraints(state: State, good: GoodValues, slots: Slots, numbers: Floa
         state.constraint_stiffness[e] = good.constraint_stiffness[e] = numbers[at[OF_STIFFNESS] + k] + 0.0
         state.constraint_damping[e] = good.constraint_damping[e] = numbers[at[OF_DAMPING] + k] + 0.0
         state.constraint_lowest_mode[e] = good.constraint_lowest_mode[e] = numbers[at[OF_MODE] + k] + 0.0
-        kind, rest, wanted = slots[at[KIND] + k], state.constraint_rest, numbers[at[KEPT_AREA] + k]
-        measure_rest(kind, state.corner_form, corner, corner + size, rest, e, state.corner_weight)
-        if kind == AREA and wanted <= math.inf:
-            rest[e, 0] = wanted + 0.0
-        for axis in range(2):
-            good.constraint_rest[e, axis] = rest[e, axis]
-        for c in range(corner, corner + size):
-            good.corner_weight[c] = state.corner_weight[c]
+        measure_constraint(state, good, e, 1.0)
+        wanted = numbers[at[KEPT_AREA] + k]
+        if slots[at[KIND] + k] == AREA and wanted <= math.inf:
+            state.constraint_rest[e, 0] = good.constraint_rest[e, 0] = wanted + 0.0
         corner += size
 
 
@@ -294,7 +290,7 @@ def _add_drives(
 
 
 @inner_kernel
-def _add_motors(state: State, wheels: DrivenWheels, slots: Slots, numbers: Floats, at: Slots) -> None:
+def _add_motors(wheels: DrivenWheels, slots: Slots, numbers: Floats, at: Slots) -> None:
     particle, rim, first = slots[COUNTED + PARTICLES], slots[COUNTED + RIMS], slots[COUNTED + MOTORS]
     for k in range(slots[RIMS]):
         wheels.rim[rim + k] = particle + slots[at[RIM] + k]

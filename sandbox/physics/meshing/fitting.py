@@ -26,6 +26,7 @@ from sandbox.physics.geometry.segment import difference, polygon_area
 from sandbox.physics.jit import float_rows_in, floats_in, inner_kernel, kernel, scalar_kernel, slot_rows_in
 from sandbox.physics.meshing.loops import (
     ROW,
+    box_of,
     is_simple_part,
     kept_corners,
     lattice,
@@ -224,32 +225,25 @@ def _begin(arena: Arena) -> None:
 
 
 @inner_kernel
-def _length(k: int, after: int, places: FloatRows) -> float:
-    dx, dy = difference(k, after, places)
-    return math.sqrt(dx * dx + dy * dy)
+def _length(places: FloatRows, start: Slots) -> float:
+    # Of all loops together.
+    total = 0.0
+    for loop in range(start.shape[0] - 1):
+        for k in range(start[loop], start[loop + 1]):
+            dx, dy = difference(k, next_of(k, start[loop], start[loop + 1]), places)
+            total += math.sqrt(dx * dx + dy * dy)
+    return total
 
 
 @inner_kernel
 def _work(places: FloatRows, start: Slots, spacing: float) -> int:
-    border = 0.0
-    for loop in range(start.shape[0] - 1):
-        for k in range(start[loop], start[loop + 1]):
-            border += _length(k, next_of(k, start[loop], start[loop + 1]), places)
-    border /= spacing
-    low_x = places[0, 0]
-    high_x = low_x
-    low_y = places[0, 1]
-    high_y = low_y
-    for k in range(start[1]):
-        low_x = min(low_x, places[k, 0])
-        high_x = max(high_x, places[k, 0])
-        low_y = min(low_y, places[k, 1])
-        high_y = max(high_y, places[k, 1])
-    height = high_y - low_y
+    border = _length(places, start) / spacing
+    left, low, right, high = box_of(places, 0, start[1])
+    height = high - low
     cell = ROW * spacing * spacing
     particles = abs(polygon_area(places, 0, start[1])) / cell + border / 2.0
     # The lattice is looked through in a slanted box.
-    box = (high_x - low_x + height) * height / cell
+    box = (right - left + height) * height / cell
     return math.ceil(min(PARTICLE_WORK * particles + PAIR_WORK * border * border + box, MOST_WORK))
 
 
@@ -290,11 +284,7 @@ def _fit(places: FloatRows, start: Slots, spacing: float, is_sampled: bool, aren
 @inner_kernel
 def _most_on_border(places: FloatRows, start: Slots, spacing: float) -> int:
     # No fewer places than outlines are given.
-    length = 0.0
-    for loop in range(start.shape[0] - 1):
-        for k in range(start[loop], start[loop + 1]):
-            length += _length(k, next_of(k, start[loop], start[loop + 1]), places)
-    return math.ceil(length / spacing) + 2 * places.shape[0] + 2
+    return math.ceil(_length(places, start) / spacing) + 2 * places.shape[0] + 2
 
 
 @inner_kernel

@@ -22,7 +22,7 @@ from sandbox.physics.arena import (
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.geometry.segment import doubled_area_of, nearest_share, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.topology.sorting import sort_ascending, sort_by_value
+from sandbox.physics.topology.sorting import end_lists, sort_ascending, sort_by_value
 
 # Grid points this close to the border, in units of the spacing, count as on it: beyond rounding, below what is seen.
 BORDER = 1e-9
@@ -153,17 +153,20 @@ def _folds_back(p: int, q: int, r: int, places: FloatRows) -> bool:
 
 
 @inner_kernel
+def box_of(places: FloatRows, first: int, last: int) -> tuple[float, float, float, float]:
+    """Left, bottom, right and top of the loop first..last."""
+    left = right = places[first, 0]
+    bottom = top = places[first, 1]
+    for k in range(first + 1, last):
+        left, right = min(left, places[k, 0]), max(right, places[k, 0])
+        bottom, top = min(bottom, places[k, 1]), max(top, places[k, 1])
+    return left, bottom, right, top
+
+
+@inner_kernel
 def grid_part(places: FloatRows, first: int, last: int, spacing: float) -> GridPart:
     """The grid of whole multiples of a spacing [m] in the box of the loop first..last."""
-    low_x = places[first, 0]
-    high_x = low_x
-    low_y = places[first, 1]
-    high_y = low_y
-    for k in range(first + 1, last):
-        low_x = min(low_x, places[k, 0])
-        high_x = max(high_x, places[k, 0])
-        low_y = min(low_y, places[k, 1])
-        high_y = max(high_y, places[k, 1])
+    low_x, low_y, high_x, high_y = box_of(places, first, last)
     left = math.ceil(_between(low_x / spacing - BORDER, -GRID_END, GRID_END))
     bottom = math.ceil(_between(low_y / spacing - BORDER, -GRID_END, GRID_END))
     columns = math.floor(_between(high_x / spacing + BORDER, -GRID_END, GRID_END)) - left + 1
@@ -198,17 +201,14 @@ def mark_grid(
         start[k, 1] = corners[first + k, 1] / spacing - float(part.bottom)
     for k in range(start.shape[0]):
         _count_side(k, next_of(k, 0, start.shape[0]), start, part, lists)
-    total = 0
-    for row in range(part.rows + 1):
-        total += lists.start[row]
-        lists.start[row] = total
-    crossed = new_floats(arena, total)
+    end_lists(part.rows, lists.start)
+    crossed = new_floats(arena, lists.start[part.rows])
     if is_full(arena):
         return
     for k in range(start.shape[0]):
         _list_side(k, next_of(k, 0, start.shape[0]), start, part, lists, crossed)
     for row in range(part.rows):
-        _sort(crossed, lists.start[row], lists.start[row + 1])
+        sort_ascending(crossed, lists.start[row], lists.start[row + 1])
         for k in range(lists.start[row], lists.start[row + 1] - 1, 2):
             _mark(row, crossed[k], crossed[k + 1], part, lists.edges)
         depth = 0
@@ -277,18 +277,6 @@ def _mark(row: int, start: float, end: float, part: GridPart, edges: Slots) -> N
     if beyond > first:
         edges[row * (part.columns + 1) + first] += 1
         edges[row * (part.columns + 1) + beyond] -= 1
-
-
-@inner_kernel
-def _sort(values: Floats, first: int, last: int) -> None:
-    # A row has few crossings.
-    for at in range(first + 1, last):
-        value = values[at]
-        to = at
-        while to > first and values[to - 1] > value:
-            values[to] = values[to - 1]
-            to -= 1
-        values[to] = value
 
 
 # ---- drawn by hand

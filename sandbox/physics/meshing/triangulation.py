@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arena import Arena, give_back, is_full, mark
 from sandbox.physics.arrays import Flags, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.topology.sorting import sort_ascending
+from sandbox.physics.topology.sorting import end_lists, sort_ascending
 
 # Rounds of evening out; each moves what gets better by it, and almost all of the gain comes with the first few.
 ROUNDS = 12
@@ -312,10 +312,7 @@ def list_stars(net: Net, stars: Stars) -> None:
     for at in range(net.key.shape[0]):
         if net.key[at] > 0:
             stars.start[(net.key[at] - 1) // sites] += 1
-    total = 0
-    for k in range(sites + 1):
-        total += stars.start[k]
-        stars.start[k] = total
+    end_lists(sites, stars.start)
     for at in range(net.key.shape[0]):
         if net.key[at] > 0:
             site = (net.key[at] - 1) // sites

@@ -4,7 +4,7 @@ Arrays whose length a step decides have room for more than there is. `detect` sa
 has changed nothing by then but scratch.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Grid, cell_size, fill_grid, find_pairs
@@ -62,19 +62,19 @@ class Collisions(NamedTuple):
     boxes: Boxes
     grid: Grid
     candidates: Candidates
-    bounds: FloatRows  # (k, 5): see update_aabbs
+    bounds: Annotated[FloatRows, "spans, 5"]  # (k, 5): see update_aabbs
     near: Near
     contacts: Contacts  # the first counts[COUPLED] are solved with springs, the others by free islands
-    source: Slots  # (k,): scratch
-    place: Slots  # (k,): where the contacts are, as they were found
+    source: Annotated[Slots, "rows"]  # (k,): scratch
+    place: Annotated[Slots, "rows"]  # (k,): where the contacts are, as they were found
     kept: KeptContacts  # contacts of the last step; the first counts[KEPT] are the world's
     islands: Islands
     work: FreeContactScratch
     inversions: Inversions
     shape_bounds: ShapeBounds
     overlaps: Overlaps
-    moved: Flags  # (n,): scratch
-    attached: Flags  # (n,): springs, constraints or hands hold it
+    moved: Annotated[Flags, "particles"]  # (n,): scratch
+    attached: Annotated[Flags, "particles"]  # (n,): springs, constraints or hands hold it
     counts: Slots
 
 

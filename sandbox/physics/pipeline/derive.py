@@ -19,7 +19,7 @@ from sandbox.physics.arena import (
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Pairs, new_grid
 from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.surfaces import has_belts
-from sandbox.physics.collision.types import KeptContacts, Near, new_contacts
+from sandbox.physics.collision.types import KeptContacts, new_contacts
 from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.integrate import Flight
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
@@ -46,19 +46,19 @@ from sandbox.physics.pipeline.collide import (
     OVERLAPPING,
     PAIRS,
     TERRAIN_PAIRS,
+    Collisions,
     update_terrain_aabbs,
 )
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER
-from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch, Islands
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, ContactOrder, new_active_set
 from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, use_diagonal_delassus
 from sandbox.physics.solvers.direct.layout import lay_out_system
 from sandbox.physics.solvers.iterative import new_held_springs, new_iteration
-from sandbox.physics.solvers.single_pass import lay_out_explicit_pass
+from sandbox.physics.solvers.single_pass import new_explicit_pass
 from sandbox.physics.untangling.jellies import new_inversions
-from sandbox.physics.untangling.overlaps import Overlaps, ShapeBounds
+from sandbox.physics.untangling.overlaps import Overlaps
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
-from sandbox.physics.water.displacers import lay_out_water
+from sandbox.physics.water.displacers import new_water
 
 # Places in `demand`: those of the counts of collisions, then numbers and columns of blocks of bodies.
 BLOCK_NUMBERS, BLOCK_COLUMNS, DEMANDS = COUPLED, COUPLED + 1, COUPLED + 2
@@ -101,7 +101,7 @@ def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
         label_bodies(state, joins, free, label)
         give_back(arena, scratch)
     lay_out_world_triangles(state, arena, world.triangles)
-    lay_out_water(state, arena, world.water)
+    set_field(world, "water", new_water(state, world.water, arena))
     set_field(world.collisions, "outline", new_outline(state, arena))
     set_field(world.collisions, "triangles", world.triangles.of_world)
     if not is_full(arena):
@@ -193,7 +193,8 @@ def _lay_out_solver(world: WorldBlock, arena: Arena) -> None:
     # These take springs of Hooke's law apart, all others take all springs so.
     takes_apart = solver in (DIRECT, ITERATIVE)
     if not takes_apart or world.plan[HAS_HOOKE] != 0:
-        lay_out_explicit_pass(state, forces.limit, takes_apart, arena, world.explicit)
+        explicit = new_explicit_pass(state, forces.limit, takes_apart, world.explicit, arena)
+        set_field(world, "explicit", explicit)
 
 
 @inner_kernel
@@ -205,21 +206,12 @@ def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
     boxes = new_tuple(Boxes, arena, particles=particles, objects=objects)
     pairs = new_tuple(Pairs, arena, particles=particles, room=_room(world, PAIRS))
     of_terrain = new_tuple(Pairs, arena, particles=particles, room=_room(world, TERRAIN_PAIRS))
-    set_field(collisions, "boxes", boxes)
-    set_field(collisions, "candidates", Candidates(pairs, of_terrain, boxes.box))
-    set_field(collisions, "colliders", new_colliders(world.state.terrain, outline, overlapping, arena))
-    set_field(collisions, "grid", new_grid(objects, _room(world, ENTRIES), arena))
-    set_field(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
-    set_field(collisions, "near", new_tuple(Near, arena))
-    set_field(collisions, "contacts", new_contacts(arena, contacts))
-    set_field(collisions, "source", new_slots(arena, contacts))
-    set_field(collisions, "place", new_slots(arena, contacts))
-    set_field(collisions, "islands", new_tuple(Islands, arena, particles=particles, contacts=contacts))
-    work = new_tuple(FreeContactScratch, arena, particles=particles, contacts=contacts)
-    set_field(collisions, "work", work)
-    set_field(collisions, "inversions", new_inversions(jellies, arena))
-    set_field(collisions, "shape_bounds", new_tuple(ShapeBounds, arena, shapes=shapes))
-    overlaps = new_tuple(Overlaps, arena, shapes=shapes, crossings=crossings, pairs=overlapping)
-    set_field(collisions, "overlaps", overlaps)
-    set_field(collisions, "moved", new_flags(arena, particles))
-    set_field(collisions, "attached", new_flags(arena, particles))
+    made = new_tuple(
+        Collisions, arena, outline=outline, triangles=collisions.triangles, boxes=boxes,
+        colliders=new_colliders(world.state.terrain, outline, overlapping, arena),
+        grid=new_grid(objects, _room(world, ENTRIES), arena), candidates=Candidates(pairs, of_terrain, boxes.box),
+        contacts=new_contacts(arena, contacts), kept=collisions.kept, inversions=new_inversions(jellies, arena),
+        overlaps=new_tuple(Overlaps, arena, shapes=shapes, crossings=crossings, pairs=overlapping),
+        counts=collisions.counts, particles=particles, rows=contacts, spans=outline.solid.shape[0], shapes=shapes,
+    )  # fmt: skip
+    set_field(world, "collisions", made)

@@ -5,20 +5,21 @@ clamped at carries only what springs as soft as these pass on, no wheel under a 
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows
+from sandbox.physics.arena import Arena, is_full, new_flags, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import constraint_rate, constraints_of, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
-from sandbox.physics.jit import inner_kernel, set_field
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_rows import (
     PAIR,
     SCALAR,
     Joints,
     clamped,
     couple_masses,
+    give_impulse,
     iterate_joint,
     own_response,
     row_velocity,
@@ -41,36 +42,31 @@ class ExplicitPass(NamedTuple):
     joints: Joints  # of particles that answer by their own mass
     chosen: Flags  # (m,): the springs that it evaluates
     limit: Floats  # [N] (m,): the force that each gives at most
-    impulse: FloatRows  # [N s] (n, 2)
-    still: FloatRows  # [m/s] (n, 2): 0
-    change: FloatRows  # [m/s] (n, 2)
-    place: FloatRows  # (q, 2) by corner, as slope
-    slope: FloatRows
+    impulse: Annotated[FloatRows, "particles, 2"]  # [N s] (n, 2)
+    still: Annotated[FloatRows, "particles, 2"]  # [m/s] (n, 2): 0
+    change: Annotated[FloatRows, "particles, 2"]  # [m/s] (n, 2)
+    place: Annotated[FloatRows, "corners, 2"]  # (q, 2) by corner, as slope
+    slope: Annotated[FloatRows, "corners, 2"]
     mass: Floats  # [kg] by row of joints: 1 / (g W g), 0: a hand's
     joint_impulse: Floats  # [N s] by row of joints: of this step
 
 
 @inner_kernel
-def lay_out_explicit_pass(state: State, limit: Floats, hooke: bool, arena: Arena, out: ExplicitPass) -> None:
-    """Lay out an explicit pass over all active springs, or those of Hooke's law alone; its joints are made apart.
+def new_explicit_pass(state: State, limit: Floats, hooke: bool, given: ExplicitPass, arena: Arena) -> ExplicitPass:
+    """An explicit pass over all active springs, or those of Hooke's law alone, with the joints that are given.
 
     limit [N] (m,): the force that each spring gives at most.
     """
-    springs, particles, corners = state.law.shape[0], state.owner.shape[0], state.corner_particle.shape[0]
-    set_field(out, "limit", limit)
-    set_field(out, "impulse", new_float_rows(arena, particles, 2))
-    set_field(out, "still", new_float_rows(arena, particles, 2))
-    set_field(out, "change", new_float_rows(arena, particles, 2))
-    set_field(out, "place", new_float_rows(arena, corners, 2))
-    set_field(out, "slope", new_float_rows(arena, corners, 2))
-    if not hooke:
-        set_field(out, "chosen", state.spring_active)
-        return
-    chosen = new_flags(arena, springs)
-    set_field(out, "chosen", chosen)
-    if not is_full(arena):
-        for s in range(springs):
-            chosen[s] = state.spring_active[s] and state.law[s] == LAW_HOOKE
+    chosen = state.spring_active
+    if hooke:
+        chosen = new_flags(arena, state.law.shape[0])
+        if not is_full(arena):
+            for s in range(chosen.shape[0]):
+                chosen[s] = state.spring_active[s] and state.law[s] == LAW_HOOKE
+    return new_tuple(
+        ExplicitPass, arena, joints=given.joints, chosen=chosen, limit=limit, mass=given.mass,
+        joint_impulse=given.joint_impulse, particles=state.owner.shape[0], corners=state.corner_particle.shape[0],
+    )  # fmt: skip
 
 
 @inner_kernel
@@ -94,23 +90,16 @@ def solve(
         u = row_velocity(rows, k, state.velocity, step.still)
         step.joint_impulse[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * step.mass[k], rows.limit[k])
     apply_explicit(state, inputs, step, True, h)
-    rows, velocity, inverse_mass = joints.rows, state.velocity, state.inverse_mass
     for k in range(rows.limit.shape[0]):
-        for e in range(rows.first[k], rows.first[k + 1]):
-            p = rows.particle[e]
-            velocity[p, 0] += rows.gradient[e, 0] * step.joint_impulse[k] * inverse_mass[p]
-            velocity[p, 1] += rows.gradient[e, 1] * step.joint_impulse[k] * inverse_mass[p]
+        give_impulse(rows, k, step.joint_impulse[k], state.velocity, state.inverse_mass)
     # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
     for k in range(rows.limit.shape[0]):
-        if rows.pair[k] != SCALAR:
-            rows.impulse[k] = 0.0
-    for k in range(rows.limit.shape[0]):
         if rows.pair[k] == PAIR:
-            iterate_joint(joints, k, step.still, velocity, inverse_mass)
+            rows.impulse[k] = rows.impulse[k + 1] = 0.0
+            iterate_joint(joints, k, step.still, state.velocity, state.inverse_mass)
     if contacts.particle.shape[0] > 0:
         sweep_masses(contacts, terms, order, state, step.change, delassus, sweeps, h)
     # lag += h (u' - target)
-    rows = joints.rows
     for k in range(rows.limit.shape[0]):
         u = row_velocity(rows, k, state.velocity, step.still)
         lag = rows.impulse[k] - JOINT_STIFFNESS * (u - rows.target[k]) * step.mass[k]

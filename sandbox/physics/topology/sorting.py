@@ -15,7 +15,7 @@ def list_by_key(key: Slots, count: int, bound: int, start: Slots, listed: Slots)
     for item in range(count):
         if key[item] >= 0:
             start[key[item]] += 1
-    _end_lists(bound, start)
+    end_lists(bound, start)
     for back in range(count):
         item = count - 1 - back
         if key[item] >= 0:
@@ -33,7 +33,7 @@ def sort_by_key(key: Slots, items: Slots, count: int, bound: int, start: Slots, 
         start[k] = 0
     for at in range(count):
         start[key[items[at]]] += 1
-    _end_lists(bound, start)
+    end_lists(bound, start)
     for back in range(count):
         item = items[count - 1 - back]
         start[key[item]] -= 1
@@ -41,8 +41,8 @@ def sort_by_key(key: Slots, items: Slots, count: int, bound: int, start: Slots, 
 
 
 @inner_kernel
-def _end_lists(bound: int, start: Slots) -> None:
-    # From the length of each list to where it ends.
+def end_lists(bound: int, start: Slots) -> None:
+    """Make of the length of each list the place where it ends."""
     total = 0
     for k in range(bound + 1):
         total += start[k]
@@ -59,7 +59,7 @@ def list_ends(
     for link in range(count):
         start[end_a[link]] += 1
         start[end_b[link]] += 1
-    _end_lists(bound, start)
+    end_lists(bound, start)
     for back in range(count):
         link = count - 1 - back
         start[end_b[link]] -= 1
@@ -81,7 +81,7 @@ def list_neighbours(
     for link in range(count):
         start[end_a[link]] += 1
         start[end_b[link]] += 1
-    _end_lists(bound, start)
+    end_lists(bound, start)
     for link in range(count):
         a = end_a[link]
         b = end_b[link]
@@ -139,7 +139,7 @@ def _merge(value: Slots | Floats, order: Slots, first: int, middle: int, last: i
 
 
 @inner_kernel
-def sort_ascending(listed: Slots, begin: int, end: int) -> None:
+def sort_ascending(listed: Slots | Floats, begin: int, end: int) -> None:
     """Sort listed[begin:end] in place, without scratch. Source: Shell 1959, by Knuth's steps."""
     gap = 1
     while 3 * gap < end - begin:

@@ -30,16 +30,18 @@ LARGEST = 1e4
 class Jellies(NamedTuple):
     """Jellies of t triangles: g of them, with k particles in all."""
 
-    group: Slots  # (t,) of a triangle
-    member: SlotRows  # (t, 3): its corners among the k
-    first: Slots  # (g,): a triangle of each jelly
-    start: Slots  # (g + 1,): where its particles begin
-    particle: Slots  # (k,)
-    corner: Slots  # (k,): one of the 3 t corners that stands there
-    inner: Flags  # (k,): triangles are all round it
-    fan: SlotRows  # (f, 4): particle of an outline, the next, the other corners of each triangle about it but the first
-    fan_start: Slots  # fans of jelly g: fan[fan_start[g]:fan_start[g + 1]]
-    gap: SlotRows  # (q, 4): triangle where those about a particle of an outline begin, it, the one before and the next
+    group: Annotated[Slots, "triangles"]  # (t,) of a triangle
+    member: Annotated[SlotRows, "triangles, 3"]  # (t, 3): its corners among the k
+    first: Annotated[Slots, "triangles"]  # (g,): a triangle of each jelly
+    start: Annotated[Slots, "triangles + 1"]  # (g + 1,): where its particles begin
+    particle: Annotated[Slots, "3 * triangles"]  # (k,)
+    corner: Annotated[Slots, "3 * triangles"]  # (k,): one of the 3 t corners that stands there
+    inner: Annotated[Flags, "3 * triangles"]  # (k,): triangles are all round it
+    # (f, 4): particle of an outline, the next, the other corners of each triangle about it but the first
+    fan: Annotated[SlotRows, "3 * triangles, 4"]
+    fan_start: Annotated[Slots, "triangles + 1"]  # fans of jelly g: fan[fan_start[g]:fan_start[g + 1]]
+    # (q, 4): triangle where those about a particle of an outline begin, it, the one before and the next
+    gap: Annotated[SlotRows, "3 * triangles, 4"]
 
 
 class TriangleScratch(NamedTuple):
@@ -84,14 +86,9 @@ def group_triangles(corners: SlotRows, is_left: Flags, bound: int, arena: Arena)
     is_left (t,): whether their forms have them run counter-clockwise.
     """
     triangles = corners.shape[0]
-    sides = 3 * triangles
-    made = Jellies(
-        new_slots(arena, triangles), new_slot_rows(arena, triangles, 3), new_slots(arena, triangles),
-        new_slots(arena, triangles + 1), new_slots(arena, sides), new_slots(arena, sides), new_flags(arena, sides),
-        new_slot_rows(arena, sides, 4), new_slots(arena, triangles + 1), new_slot_rows(arena, sides, 4),
-    )  # fmt: skip
+    made = new_tuple(Jellies, arena, triangles=triangles)
     start = mark(arena)
-    work = new_tuple(TriangleScratch, arena, triangles=triangles, marks=max(bound, sides) + 1)
+    work = new_tuple(TriangleScratch, arena, triangles=triangles, marks=max(bound, 3 * triangles) + 1)
     if triangles == 0 or is_full(arena):
         return made
     groups = _group(corners, bound, made, work)
@@ -246,11 +243,8 @@ def _find_fans(
 def triangles_of(state: State, arena: Arena) -> Triangles:
     """The triangles of a world, as its constraints are now."""
     capacity = state.constraint_kind.shape[0]
-    constraint, corners, is_left = (
-        new_slots(arena, capacity),
-        new_slot_rows(arena, capacity, 3),
-        new_flags(arena, capacity),
-    )
+    constraint, corners = new_slots(arena, capacity), new_slot_rows(arena, capacity, 3)
+    is_left = new_flags(arena, capacity)
     count = 0
     if not is_full(arena):
         for k in range(capacity):

@@ -9,43 +9,20 @@ are jellies that are inverted already (jellies.py), until they have found back, 
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import (
-    Arena,
-    give_back,
-    is_full,
-    mark,
-    new_flags,
-    new_float_rows,
-    new_slot_rows,
-    new_slots,
-)
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.tunnelling import stop_at_terrain, stopped
 from sandbox.physics.components import root_of, united
-from sandbox.physics.geometry.rigid import (
-    RigidMotion,
-    WeightedSums,
-    centre_of,
-    velocity_at,
-    with_point,
-    with_turn,
-)
+from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, velocity_at, with_point, with_turn
 from sandbox.physics.geometry.segment import doubled_area_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel, set_field
 from sandbox.physics.marks import TERRAIN_GROUP
 from sandbox.physics.state import State
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key
-from sandbox.physics.untangling.jellies import (
-    Inversions,
-    Jellies,
-    Triangles,
-    find_inverted,
-    new_inversions,
-    triangles_of,
-)
+from sandbox.physics.untangling.jellies import Inversions, Triangles, find_inverted, new_inversions, triangles_of
 
 # A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher
 # stiffens what is merely squeezed, lower lets triangles be pressed flat in fewer steps.
@@ -73,21 +50,21 @@ MASS, X, Y, U, V, INERTIA, SPIN, COUNT = range(8)
 class ClampedTriangles(NamedTuple):
     """Triangles of areas and the rows that they join, particles of a world or rows of a system."""
 
-    corner: SlotRows  # (k, 3): rows, of gaps too, each after a triangle beside it
-    gap: Flags  # (k,): which are gaps
-    group: Slots  # (k,): the jelly
-    constraint: Slots  # (k,): of the triangle
-    start: Slots  # triangles of constraint t: corner[start[t]:start[t + 1]]
+    corner: Annotated[SlotRows, "triangles, 3"]  # (k, 3): rows, of gaps too, each after a triangle beside it
+    gap: Annotated[Flags, "triangles"]  # (k,): which are gaps
+    group: Annotated[Slots, "triangles"]  # (k,): the jelly
+    constraint: Annotated[Slots, "triangles"]  # (k,): of the triangle
+    start: Annotated[Slots, "rests + 1"]  # triangles of constraint t: corner[start[t]:start[t + 1]]
     rest: FloatRows  # [m^2] (t, 2): area wanted and of the form
     position: FloatRows  # [m] by row (n,), as all down to collides
     velocity: FloatRows  # [m/s]: is clamped
     mass: Floats  # [kg]
     inverse_mass: Floats  # [1/kg]
-    collides: Slots  # of corners, 0 of all others
+    collides: Annotated[Slots, "rows"]  # of corners, 0 of all others
     inverted: Flags  # by jelly: let go
-    label: Slots  # scratch, as the two below: what a row moves as one with
-    fixed: Flags  # what cannot move
-    sums: FloatRows
+    label: Annotated[Slots, "rows"]  # scratch, as the two below: what a row moves as one with
+    fixed: Annotated[Flags, "rows"]  # what cannot move
+    sums: Annotated[FloatRows, f"rows, {COUNT} + 1"]
     terrain: Terrain
 
 
@@ -447,50 +424,38 @@ def _hold_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float)
 @inner_kernel
 def lay_out_world_triangles(state: State, arena: Arena, out: WorldTriangles) -> None:
     """Lay out the triangles of a world, as its topology is now."""
-    particles, clamped = state.owner.shape[0], out.clamped
+    particles = state.owner.shape[0]
     set_field(out, "of_world", triangles_of(state, arena))
     if is_full(arena):
         return
     found = out.of_world
     set_field(out, "found", new_inversions(found.jellies, arena))
     set_field(out, "marked", new_flags(arena, particles))
-    lay_out_triangles(
-        found.constraint, found.corners, found.jellies, state.constraint_rest.shape[0], particles, arena, clamped
-    )
+    clamped = new_tuple(
+        ClampedTriangles, arena, rest=state.constraint_rest, position=state.position, velocity=state.velocity,
+        mass=state.mass, inverse_mass=state.inverse_mass, inverted=out.found.is_inverted, terrain=state.terrain,
+        triangles=count_with_gaps(found), rests=state.constraint_rest.shape[0], rows=particles,
+    )  # fmt: skip
+    set_field(out, "clamped", clamped)
     every = new_slots(arena, particles)
     if is_full(arena):
         return
     for p in range(particles):
         every[p] = p
-    lay_out_collides(found.corners, state, every, arena, clamped)
-    set_field(clamped, "rest", state.constraint_rest)
-    set_field(clamped, "position", state.position)
-    set_field(clamped, "velocity", state.velocity)
-    set_field(clamped, "mass", state.mass)
-    set_field(clamped, "inverse_mass", state.inverse_mass)
-    set_field(clamped, "inverted", out.found.is_inverted)
+    fill_triangles(found, state, every, arena, clamped)
 
 
 @inner_kernel
-def lay_out_triangles(
-    constraint: Slots, corners: SlotRows, jellies: Jellies, rests: int, rows: int, arena: Arena, out: ClampedTriangles
-) -> None:
-    """Lay out triangles (t, 3) of these constraints (t,), ascending, each followed by the gaps beside it.
+def count_with_gaps(found: Triangles) -> int:
+    """How many triangles are clamped: those of areas, and gaps."""
+    return found.corners.shape[0] + found.jellies.gap.shape[0]
 
-    rests: of how many constraints; rows: that they join, of how many.
-    """
+
+@inner_kernel
+def fill_triangles(found: Triangles, state: State, particle: Slots, arena: Arena, made: ClampedTriangles) -> None:
+    """Fill in triangles, of constraints ascending, each followed by the gaps beside it; particle (n,): of each row."""
+    jellies, corners, scratch = found.jellies, found.corners, mark(arena)
     count, gaps = corners.shape[0], jellies.gap.shape[0]
-    corner, gap = new_slot_rows(arena, count + gaps, 3), new_flags(arena, count + gaps)
-    group, owned, start = new_slots(arena, count + gaps), new_slots(arena, count + gaps), new_slots(arena, rests + 1)
-    set_field(out, "corner", corner)
-    set_field(out, "gap", gap)
-    set_field(out, "group", group)
-    set_field(out, "constraint", owned)
-    set_field(out, "start", start)
-    set_field(out, "label", new_slots(arena, rows))
-    set_field(out, "fixed", new_flags(arena, rows))
-    set_field(out, "sums", new_float_rows(arena, rows, COUNT + 1))
-    scratch = mark(arena)
     beside, listed, first = new_slots(arena, gaps), new_slots(arena, gaps), new_slots(arena, count + 1)
     if is_full(arena):
         return
@@ -502,24 +467,14 @@ def lay_out_triangles(
         for at in range(first[t] - 1, first[t + 1]):
             is_gap = at >= first[t]
             for c in range(3):
-                corner[k, c] = jellies.gap[listed[at], 1 + c] if is_gap else corners[t, c]
-            gap[k] = is_gap
-            group[k] = jellies.group[t]
-            owned[k] = constraint[t]
-            start[constraint[t] + 1] = k + 1
+                made.corner[k, c] = jellies.gap[listed[at], 1 + c] if is_gap else corners[t, c]
+            made.gap[k] = is_gap
+            made.group[k] = jellies.group[t]
+            made.constraint[k] = found.constraint[t]
+            made.start[found.constraint[t] + 1] = k + 1
             k += 1
-    for t in range(rests):
-        start[t + 1] = max(start[t + 1], start[t])
+        for c in range(3):
+            made.collides[corners[t, c]] = state.collides[particle[corners[t, c]]]
+    for t in range(made.start.shape[0] - 1):
+        made.start[t + 1] = max(made.start[t + 1], made.start[t])
     give_back(arena, scratch)
-
-
-@inner_kernel
-def lay_out_collides(corners: SlotRows, state: State, row: Slots, arena: Arena, out: ClampedTriangles) -> None:
-    """Lay out the collision groups of triangles (t, 3), for particles row (n,); others collide with nothing."""
-    collides = new_slots(arena, row.shape[0])
-    set_field(out, "collides", collides)
-    set_field(out, "terrain", state.terrain)
-    if not is_full(arena):
-        for t in range(corners.shape[0]):
-            for c in range(3):
-                collides[corners[t, c]] = state.collides[row[corners[t, c]]]

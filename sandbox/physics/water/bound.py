@@ -157,7 +157,7 @@ def _measure(
     # Of bodies that are due, after their way: kinetic energy and that of weights in MOVES, what U gained in UNDER [J].
     body, velocity = water.body, state.velocity
     for p in range(label.shape[0]):
-        body[p, MOVES] = 0.0
+        body[p, MOVES] = body[p, UNDER] = water.lifted[p] = 0.0
     for p in range(label.shape[0]):
         ahead = 0.0 if water.is_joined[p] else early
         for axis in range(2):
@@ -166,8 +166,6 @@ def _measure(
             squared = velocity[p, 0] * velocity[p, 0] + velocity[p, 1] * velocity[p, 1]
             weight = g * state.gravity_scale[p]
             body[label[p], MOVES] += state.mass[p] * (0.5 * squared + weight * 0.5 * h * velocity[p, 1])
-    for p in range(label.shape[0]):
-        water.lifted[p] = body[p, UNDER] = 0.0
     add_energies(water, state, g)
     for p in range(label.shape[0]):
         body[label[p], UNDER] += water.lifted[p]

@@ -10,21 +10,10 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.arena import (
-    Arena,
-    give_back,
-    is_full,
-    mark,
-    new_flags,
-    new_float_rows,
-    new_floats,
-    new_slot_rows,
-    new_slots,
-    new_tuple,
-)
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.constraints import AREA, TRIANGLE
-from sandbox.physics.jit import inner_kernel, set_field
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_MATERIAL, LINE, NO_EDGE
 from sandbox.physics.state import State
 
@@ -72,28 +61,28 @@ class Water(NamedTuple):
 
     pool: FloatRows
     hull: SlotRows
-    triangle: SlotRows  # (t, 3): particles
-    constraint: Slots  # (t,): the constraint of each, which says how large it is to be
-    shell_start: Slots  # edges of whole hull o: shell_start[o]:shell_start[o + 1]
-    shell_a: Slots  # what is enclosed lies on the left of the way from a to b
-    shell_b: Slots
-    shell_share: Floats  # by edge: of what the hull enclosed when it was created, the part between edge and middle
-    shell_area: Floats  # [m^2] (o,): what it enclosed then
-    shell_constraint: Slots  # (o,): the constraint that says how large it is to be; -1: there is none
-    edge: Slots  # springs that are dragged
-    sides: Floats  # how many sides of each are wet: 2 of a line
-    disc: Slots
-    disc_area: Floats  # [m^2]; 0: it has its own radius
-    is_bare: Flags  # whether a disc is dragged as such, as no edge of it is
-    is_joined: Flags  # (n,): whether springs or constraints join a particle to anything
-    load: FloatRows  # (n, LOADS)
-    body: FloatRows  # (n, SUMS)
-    wet: Flags  # (n,)
-    due: Flags  # (n,): whose lift is looked for
-    lifted: Floats  # [J] (n,): energy of what is lifted, at one particle of each
-    before: FloatRows  # [m] (n, 2): where the way of a step begins, as in lift.py, and ends
-    after: FloatRows
-    corner: FloatRows  # (3, 3): see lift.py
+    triangle: Annotated[SlotRows, "constraints, 3"]  # (t, 3): particles
+    constraint: Annotated[Slots, "constraints"]  # (t,): the constraint of each, which says how large it is to be
+    shell_start: Annotated[Slots, "rows + 1"]  # edges of whole hull o: shell_start[o]:shell_start[o + 1]
+    shell_a: Annotated[Slots, "rows"]  # what is enclosed lies on the left of the way from a to b
+    shell_b: Annotated[Slots, "rows"]
+    shell_share: Annotated[Floats, "rows"]  # by edge: part of what the hull enclosed at first, between edge and middle
+    shell_area: Annotated[Floats, "rows"]  # [m^2] (o,): what it enclosed then
+    shell_constraint: Annotated[Slots, "rows"]  # (o,): the constraint that says how large it is to be; -1: none
+    edge: Annotated[Slots, "springs"]  # springs that are dragged
+    sides: Annotated[Floats, "springs"]  # how many sides of each are wet: 2 of a line
+    disc: Annotated[Slots, "particles"]
+    disc_area: Annotated[Floats, "particles"]  # [m^2]; 0: it has its own radius
+    is_bare: Annotated[Flags, "particles"]  # whether a disc is dragged as such, as no edge of it is
+    is_joined: Annotated[Flags, "particles"]  # (n,): whether springs or constraints join a particle to anything
+    load: Annotated[FloatRows, f"particles, {LOADS}"]  # (n, LOADS)
+    body: Annotated[FloatRows, f"particles, {SUMS}"]  # (n, SUMS)
+    wet: Annotated[Flags, "particles"]  # (n,)
+    due: Annotated[Flags, "particles"]  # (n,): whose lift is looked for
+    lifted: Annotated[Floats, "particles"]  # [J] (n,): energy of what is lifted, at one particle of each
+    before: Annotated[FloatRows, "particles, 2"]  # [m] (n, 2): where the way of a step begins, as in lift.py, and ends
+    after: Annotated[FloatRows, "particles, 2"]
+    corner: Annotated[FloatRows, "3, 3"]  # (3, 3): see lift.py
 
 
 class WaterScratch(NamedTuple):
@@ -116,45 +105,34 @@ def pools_of(pools: Sequence[Pool]) -> FloatRows:
 
 
 @inner_kernel
-def lay_out_water(state: State, arena: Arena, water: Water) -> None:
-    """Lay out the displacing hulls and discs of a world with its present topology; nothing without a pool."""
-    if water.pool.shape[0] == 0:
-        return
+def new_water(state: State, given: Water, arena: Arena) -> Water:
+    """Given pools and hulls with what a world displaces at its present topology; nothing of that without a pool."""
+    if given.pool.shape[0] == 0:
+        return given
     particles, springs, constraints = state.owner.shape[0], state.spring_active.shape[0], state.constraint_kind.shape[0]
-    set_field(water, "triangle", new_slot_rows(arena, constraints, 3))
-    set_field(water, "constraint", new_slots(arena, constraints))
-    set_field(water, "shell_start", new_slots(arena, water.hull.shape[0] + 1))
-    set_field(water, "shell_a", new_slots(arena, water.hull.shape[0]))
-    set_field(water, "shell_b", new_slots(arena, water.hull.shape[0]))
-    set_field(water, "shell_share", new_floats(arena, water.hull.shape[0]))
-    set_field(water, "shell_area", new_floats(arena, water.hull.shape[0]))
-    set_field(water, "shell_constraint", new_slots(arena, water.hull.shape[0]))
-    set_field(water, "edge", new_slots(arena, springs))
-    set_field(water, "sides", new_floats(arena, springs))
-    set_field(water, "disc", new_slots(arena, particles))
-    set_field(water, "disc_area", new_floats(arena, particles))
-    set_field(water, "is_bare", new_flags(arena, particles))
-    set_field(water, "is_joined", new_flags(arena, particles))
-    set_field(water, "load", new_float_rows(arena, particles, LOADS))
-    set_field(water, "body", new_float_rows(arena, particles, SUMS))
-    set_field(water, "wet", new_flags(arena, particles))
-    set_field(water, "due", new_flags(arena, particles))
-    set_field(water, "lifted", new_floats(arena, particles))
-    set_field(water, "before", new_float_rows(arena, particles, 2))
-    set_field(water, "after", new_float_rows(arena, particles, 2))
-    set_field(water, "corner", new_float_rows(arena, 3, 3))
+    rows = given.hull.shape[0]
+    water = new_tuple(
+        Water, arena, pool=given.pool, hull=given.hull, particles=particles, springs=springs, constraints=constraints,
+        rows=rows,
+    )  # fmt: skip
     scratch = mark(arena)
-    hulls = water.hull[water.hull.shape[0] - 1, HULL] + 1 if water.hull.shape[0] > 0 else 0
+    hulls = water.hull[rows - 1, HULL] + 1 if rows > 0 else 0
     work = new_tuple(WaterScratch, arena, particles=particles, springs=springs, hulls=hulls)
     if is_full(arena):
-        return
+        return water
     triangles = _list_triangles(state, water, work)
     _find_whole_hulls(state, water.hull, work)
     hulls, edges = _list_shells(state, water, work)
     dragged = _list_edges(state, water, work)
     discs = _list_discs(state, water, work)
-    _make_lists_as_long_as(triangles, hulls, edges, dragged, discs, water)
     give_back(arena, scratch)
+    return Water(
+        water.pool, water.hull, water.triangle[:triangles], water.constraint[:triangles],
+        water.shell_start[: hulls + 1], water.shell_a[:edges], water.shell_b[:edges], water.shell_share[:edges],
+        water.shell_area[:hulls], water.shell_constraint[:hulls], water.edge[:dragged], water.sides[:dragged],
+        water.disc[:discs], water.disc_area[:discs], water.is_bare[:discs], water.is_joined, water.load, water.body,
+        water.wet, water.due, water.lifted, water.before, water.after, water.corner,
+    )  # fmt: skip
 
 
 @inner_kernel
@@ -283,20 +261,3 @@ def _list_discs(state: State, water: Water, work: WaterScratch) -> int:
         water.is_bare[count] = not work.has_edge[p]
         count += 1
     return count
-
-
-@inner_kernel
-def _make_lists_as_long_as(triangles: int, hulls: int, edges: int, springs: int, discs: int, water: Water) -> None:
-    set_field(water, "triangle", water.triangle[:triangles])
-    set_field(water, "constraint", water.constraint[:triangles])
-    set_field(water, "shell_start", water.shell_start[: hulls + 1])
-    set_field(water, "shell_a", water.shell_a[:edges])
-    set_field(water, "shell_b", water.shell_b[:edges])
-    set_field(water, "shell_share", water.shell_share[:edges])
-    set_field(water, "shell_area", water.shell_area[:hulls])
-    set_field(water, "shell_constraint", water.shell_constraint[:hulls])
-    set_field(water, "edge", water.edge[:springs])
-    set_field(water, "sides", water.sides[:springs])
-    set_field(water, "disc", water.disc[:discs])
-    set_field(water, "disc_area", water.disc_area[:discs])
-    set_field(water, "is_bare", water.is_bare[:discs])

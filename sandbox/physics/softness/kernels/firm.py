@@ -18,9 +18,7 @@ from sandbox.physics.arena import (
     lay_out,
     mark,
     new_flags,
-    new_float_rows,
     new_floats,
-    new_slot_rows,
     new_slots,
     new_tuple,
 )
@@ -102,8 +100,8 @@ class FormPiece(NamedTuple):
     """A body or a piece: its form, and the slots of its springs and constraints."""
 
     form: StiffForm
-    spring: Slots
-    constraint: Slots
+    spring: Annotated[Slots, "springs"]
+    constraint: Annotated[Slots, "triangles + turns"]
 
 
 class Firmable(NamedTuple):
@@ -289,13 +287,7 @@ def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Piece
             springs += int(_is_added(state, s, owner))
         for k in range(state.constraint_kind.shape[0]):
             areas += int(not is_listed[k] and _is_area_of(state, k, owner))
-    made = FormPiece(
-        StiffForm(
-            new_float_rows(arena, points, 2), new_floats(arena, points), new_slot_rows(arena, springs, 2),
-            new_slot_rows(arena, areas, CORNERS), new_slot_rows(arena, bends, CORNERS),
-        ),
-        new_slots(arena, springs), new_slots(arena, areas + bends),
-    )  # fmt: skip
+    made = new_tuple(FormPiece, arena, particles=points, springs=springs, triangles=areas, turns=bends)
     if not is_full(arena):
         _fill_points(state, whole, number, pieces, index, made.form)
         _fill_piece(state, whole, number, pieces, index, made)

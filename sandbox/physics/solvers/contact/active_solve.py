@@ -92,7 +92,6 @@ def solve_active(
             break
     if spent > 0.0:
         # Within the bounds of Coulomb, which equations do not know.
-        at = terms.active
         for i in range(count):
             c = at.order[i]
             if terms.normal[c] > 0.0:

@@ -56,8 +56,8 @@ class Islands(NamedTuple):
 
     label: Annotated[Slots, "particles"]  # the first particle of its island
     is_coupled: Annotated[Flags, "particles"]  # by label
-    contact_label: Annotated[Slots, "contacts"]  # by contact, as found
-    first: Annotated[Slots, "contacts + 1"]  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
+    contact_label: Annotated[Slots, "rows"]  # by contact, as found
+    first: Annotated[Slots, "rows + 1"]  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
     at: Annotated[Slots, "particles + 2"]  # scratch
 
 
@@ -71,44 +71,42 @@ class FreeContactScratch(NamedTuple):
     There is room for more contacts. What cannot move has a place for each contact.
     """
 
-    place: Annotated[SlotRows, "contacts, 2"]  # of a contact's particle and of what it pushes
-    level: Annotated[Slots, "contacts"]  # of a contact, as way
-    way: Annotated[Floats, "contacts"]
-    constraint: Annotated[FloatRows, f"contacts, {COLUMNS}"]  # see the columns
-    end: Annotated[SlotRows, "contacts, 2"]  # places of a constraint
-    contact: Annotated[Slots, "contacts"]  # that of a constraint
-    at: Annotated[Slots, "contacts + 1"]  # scratch, where each level goes on
-    begin: Annotated[Slots, "contacts + 1"]  # (g + 1,): first place of an island
-    steps: Annotated[Slots, "contacts"]  # (g,): small steps of an island
-    hardness: Annotated[Floats, "contacts"]  # (g,)
-    alone: Annotated[Flags, "contacts"]  # (g,): nothing is solved beside the island
-    allowed: Annotated[Floats, "contacts"]  # [J] (g,): energy that the island may end with
-    beside: Annotated[Slots, "contacts"]  # (g,): islands that are solved side by side
-    particle: Annotated[Slots, "2 * contacts"]  # that of a place
-    weight: Annotated[Floats, "2 * contacts"]  # [1/kg]
-    turning: Annotated[Floats, "2 * contacts"]  # [1/kg]: the weight of its surface
-    motion: Annotated[FloatRows, "2 * contacts, 8"]  # see the columns of a place
-    gain: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what forces add to the velocity in the step
-    highest: Annotated[Slots, "2 * contacts"]  # level so far
+    place: Annotated[SlotRows, "rows, 2"]  # of a contact's particle and of what it pushes
+    level: Annotated[Slots, "rows"]  # of a contact, as way
+    way: Annotated[Floats, "rows"]
+    constraint: Annotated[FloatRows, f"rows, {COLUMNS}"]  # see the columns
+    end: Annotated[SlotRows, "rows, 2"]  # places of a constraint
+    contact: Annotated[Slots, "rows"]  # that of a constraint
+    at: Annotated[Slots, "rows + 1"]  # scratch, where each level goes on
+    begin: Annotated[Slots, "rows + 1"]  # (g + 1,): first place of an island
+    steps: Annotated[Slots, "rows"]  # (g,): small steps of an island
+    hardness: Annotated[Floats, "rows"]  # (g,)
+    alone: Annotated[Flags, "rows"]  # (g,): nothing is solved beside the island
+    allowed: Annotated[Floats, "rows"]  # [J] (g,): energy that the island may end with
+    beside: Annotated[Slots, "rows"]  # (g,): islands that are solved side by side
+    particle: Annotated[Slots, "2 * rows"]  # that of a place
+    weight: Annotated[Floats, "2 * rows"]  # [1/kg]
+    turning: Annotated[Floats, "2 * rows"]  # [1/kg]: the weight of its surface
+    motion: Annotated[FloatRows, "2 * rows, 8"]  # see the columns of a place
+    gain: Annotated[FloatRows, "2 * rows, 2"]  # [m/s]: what forces add to the velocity in the step
+    highest: Annotated[Slots, "2 * rows"]  # level so far
     local: Annotated[Slots, "particles"]  # the place of a particle, -1: none
     ahead: Annotated[FloatRows, "particles, 2"]  # [m]: how much further than h v' a particle has gone in the step
-    added: Annotated[
-        FloatRows, "2 * contacts, 2"
-    ]  # [m/s]: what impacts (free_impacts.py) have added in this small step
-    stamp: Annotated[Slots, "2 * contacts"]  # the pass that it was hit in
-    since: Annotated[Floats, "2 * contacts"]  # [s]: when that was
-    hit: Annotated[Slots, "contacts"]  # the constraint of a hit; by hit, as all down to last
-    pushed: Annotated[Floats, "contacts"]  # [N s]: impulse along
-    across: Annotated[Floats, "contacts"]  # [N s]: impulse across
-    met: Annotated[Floats, "contacts"]  # [s]: when
-    speed: Annotated[Floats, "contacts"]  # [m/s]: along, before it
-    target: Annotated[Floats, "contacts"]  # [m/s]: along, after it
-    slip: Annotated[Floats, "contacts"]  # [m/s]: across, before it
-    last_across: Annotated[Floats, "contacts"]  # [N s]: across before the last friction
-    last: Annotated[Floats, "contacts"]  # [N s]: what pushed for that
-    first: Annotated[Floats, "2 * contacts"]  # [s]: when the first hit of a pass is
-    turned: Annotated[Floats, "2 * contacts"]  # [s]: when in a small step it met an edge that rises, 0: it has not
-    onto: Annotated[Slots, "2 * contacts"]  # the constraint with that edge
+    added: Annotated[FloatRows, "2 * rows, 2"]  # [m/s]: what forces and the last small step add in this one
+    stamp: Annotated[Slots, "2 * rows"]  # the pass that it was hit in
+    since: Annotated[Floats, "2 * rows"]  # [s]: when that was
+    hit: Annotated[Slots, "rows"]  # the constraint of a hit; by hit, as all down to last
+    pushed: Annotated[Floats, "rows"]  # [N s]: impulse along
+    across: Annotated[Floats, "rows"]  # [N s]: impulse across
+    met: Annotated[Floats, "rows"]  # [s]: when
+    speed: Annotated[Floats, "rows"]  # [m/s]: along, before it
+    target: Annotated[Floats, "rows"]  # [m/s]: along, after it
+    slip: Annotated[Floats, "rows"]  # [m/s]: across, before it
+    last_across: Annotated[Floats, "rows"]  # [N s]: across before the last friction
+    last: Annotated[Floats, "rows"]  # [N s]: what pushed for that
+    first: Annotated[Floats, "2 * rows"]  # [s]: when the first hit of a pass is
+    turned: Annotated[Floats, "2 * rows"]  # [s]: when in a small step it met an edge that rises, 0: it has not
+    onto: Annotated[Slots, "2 * rows"]  # the constraint with that edge
 
 
 @inlined_kernel
@@ -140,7 +138,6 @@ def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached:
             first = united(label, first, node)
     for p in range(label.shape[0]):
         label[p] = root_of(label, p)
-    for p in range(label.shape[0]):
         islands.is_coupled[p] = False
     for p in range(label.shape[0]):
         if attached[p] and inverse_mass[p] > 0.0:
@@ -210,20 +207,10 @@ def _place_contact(
         a = contacts.end_a[c]
         b = contacts.end_b[c]
         ratio = contacts.share[c]
-        work.particle[count] = contacts.particle[c]
-        work.weight[count] = 0.0
-        work.turning[count] = 0.0
-        work.highest[count] = 0
-        work.stamp[count] = 0
-        work.turned[count] = 0.0
-        work.added[count, 0] = 0.0
-        work.added[count, 1] = 0.0
-        for column in range(8):
-            work.motion[count, column] = 0.0
-        for axis in range(2):
-            if b >= 0:
+        _open_place(count, contacts.particle[c], 0.0, 0.0, work)
+        if b >= 0:
+            for axis in range(2):
                 work.motion[count, VX + axis] = (1.0 - ratio) * start[a, axis] + ratio * start[b, axis]
-            work.gain[count, axis] = 0.0
         work.motion[count, VX] += contacts.belt[c] * contacts.normal[c, 1]
         work.motion[count, VY] -= contacts.belt[c] * contacts.normal[c, 0]
         q, count = count, count + 1
@@ -255,21 +242,24 @@ def _place_of(
     if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
         return work.local[p], count
     work.local[p] = count
-    work.particle[count] = p
-    work.weight[count] = colliders.inverse_mass[p]
-    work.turning[count] = colliders.turning[p]
-    work.highest[count] = 0
-    work.stamp[count] = 0
-    work.turned[count] = 0.0
+    _open_place(count, p, colliders.inverse_mass[p], colliders.turning[p], work)
     for axis in range(2):
-        work.added[count, axis] = 0.0
         work.motion[count, VX + axis] = start[p, axis]
-        work.motion[count, WX + axis] = 0.0
-        work.motion[count, PUSHED_X + axis] = 0.0
         work.gain[count, axis] = colliders.velocity[p, axis] - start[p, axis]
     work.motion[count, SURFACE] = spin[p] * colliders.radius[p]
-    work.motion[count, PUSHED_SURFACE] = 0.0
     return count, count + 1
+
+
+@inner_kernel
+def _open_place(place: int, p: int, weight: float, turning: float, work: FreeContactScratch) -> None:
+    # A place for a particle, at rest.
+    work.particle[place], work.weight[place], work.turning[place] = p, weight, turning
+    work.highest[place] = work.stamp[place] = 0
+    work.turned[place] = 0.0
+    for axis in range(2):
+        work.added[place, axis] = work.gain[place, axis] = 0.0
+    for column in range(8):
+        work.motion[place, column] = 0.0
 
 
 @inner_kernel
@@ -372,7 +362,6 @@ def _fill_constraint(contacts: Contacts, c: int, k: int, colliders: Colliders, w
         if row[k, WAY] == FOLLOWS:
             row[k, ARM] = (contacts.normal[c, 0] * dx + contacts.normal[c, 1] * dy) * row[k, PER_REACH]
         elif row[k, WAY] == COMING:
-            row[k, BOUNCE] = -1.0
             row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
     ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
     row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
@@ -433,15 +422,9 @@ def meet(work: FreeContactScratch, i: int, p: int, q: int, small: float) -> floa
     late = _time_until(wx, wy, ux, uy, -row[i, REACH])
     if not late < small:
         return math.inf
-    dx, dy = wx + late * ux, wy + late * uy
-    distance = math.sqrt(dx * dx + dy * dy)
-    if distance > SHORTEST:
-        row[i, NX] = dx / distance
-        row[i, NY] = dy / distance
-    row[i, GAP] = row[i, REACH] + row[i, NX] * wx + row[i, NY] * wy
-    row[i, ARM] = distance * row[i, PER_REACH]
     row[i, WAY] = FOLLOWS
     row[i, BOUNCE] = 0.0
+    look_at(work, i, late)
     return late
 
 

@@ -256,7 +256,6 @@ def _solve_two(work: FreeContactScratch) -> None:
     two = max(0.0, work.target[1] - work.speed[1])
     a, b = 1.0 / row[i, MASS], 1.0 / row[j, MASS]
     # What an impulse of 1 along the normal of one contact does to the velocity of another.
-    row = work.constraint
     p, q = work.end[i, 0], work.end[i, 1]
     r, s = work.end[j, 0], work.end[j, 1]
     weight = 0.0

@@ -82,11 +82,11 @@ class Delassus(NamedTuple):
     base[k] on. columns: scratch of blocks, by lane. joints: those of the bodies and particles.
     """
 
-    block: Slots
-    place: Slots
-    start: Slots
-    point: Slots
-    base: Slots
+    block: Annotated[Slots, "particles"]
+    place: Annotated[Slots, "particles"]
+    start: Annotated[Slots, "blocks + 1"]
+    point: Annotated[Slots, "rows"]
+    base: Annotated[Slots, "blocks + 1"]
     numbers: Floats
     columns: Floats
     joints: Joints

@@ -9,7 +9,7 @@ J = max(0, -K (u' + b)), b = x / h above it and beta x / h below. It stands in t
 where it is foreseen to push, and has the same strength whatever Cs and Cd are: the softest jelly lies on its floors.
 """
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.constraints import (
     AREA,
     FLOOR,
@@ -346,28 +346,16 @@ def constraint_slope(span: Span, system: System) -> float:
 
 @inner_kernel
 def constraint_potential(
-    span: Span, system: System, position: FloatRows, velocity: FloatRows, norm: Floats, time: float, h: float
-) -> float:
-    """Energy of a body's constraints at position + time velocity [J]."""
-    # sum of norm C^2 / (2 h^2)
-    constraints = system.constraints
-    total = 0.0
-    for k in range(span.first_constraint, span.last_constraint):
-        _look(k, constraints, position, velocity, time)
-        error = _error(k, constraints, constraints.spare) / h
-        total += 0.5 * norm[k] * error * error
-    return total
-
-
-@inner_kernel
-def floor_potential(
     span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float
 ) -> float:
-    """Energy of the floors under a body's triangles at position + time velocity [J]."""
+    """Energy of a body's constraints, and of the floors under its triangles, at position + time velocity [J]."""
+    # sum of k h^2 C^2 / (2 h^2)
     constraints = system.constraints
-    total = 0.0
+    total = of_floors = 0.0
     for k in range(span.first_constraint, span.last_constraint):
-        if constraints.floor[k] > 0.0:
-            _look(k, constraints, position, velocity, time)
-            total += _floor_energy(k, constraints, _error(k, constraints, constraints.spare), h)
-    return total
+        _look(k, constraints, position, velocity, time)
+        error = _error(k, constraints, constraints.spare)
+        of_floors += _floor_energy(k, constraints, error, h)
+        error /= h
+        total += 0.5 * constraints.k_h2[k] * error * error
+    return total + of_floors

@@ -17,9 +17,10 @@ from sandbox.physics.collision.types import Contacts
 from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.solvers.direct.constraint_terms import constraint_potential
 from sandbox.physics.solvers.direct.network import potential, returnable, start_potential
 from sandbox.physics.solvers.direct.rigid_turn import kinetic_at_end
-from sandbox.physics.solvers.direct.spring_terms import largest_strain
+from sandbox.physics.solvers.direct.spring_terms import restore_springs
 from sandbox.physics.solvers.direct.system import Span, System, kinetic
 from sandbox.physics.state import State
 from sandbox.physics.untangling.overlaps import DEEP
@@ -131,9 +132,11 @@ def unreturnable(body: int, span: Span, system: System, keeps: bool, h: float) -
     """
     # Where some Cs is above its Cd, k is no larger than what moves; and what is far from its lengths is no linear body.
     kept = system.bodies.unreturnable0[body] if keeps else 0.0
-    if not (keeps or system.bodies.underdamped[body]) and largest_strain(span, system, h) < CLOSE:
-        full = potential(span, system, system.rows.position, system.rows.v, h, h)
-        kept = max(0.0, full - returnable(span, system, h))
+    if not (keeps or system.bodies.underdamped[body]):
+        full, strain = restore_springs(span, system, h)
+        if strain < CLOSE:
+            full += constraint_potential(span, system, system.rows.position, system.rows.v, h, h)
+            kept = max(0.0, full - returnable(span, system, h))
     system.bodies.unreturnable[body] = kept
     return kept
 

@@ -17,14 +17,7 @@ from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.surfaces import SURFACE_WEIGHT
 from sandbox.physics.collision.tunnelling import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.types import Contacts, weight_of
-from sandbox.physics.geometry.rigid import (
-    RigidMotion,
-    WeightedSums,
-    centre_of,
-    velocity_at,
-    with_point,
-    with_turn,
-)
+from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, velocity_at, with_point, with_turn
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.marks import BANK_UNOPENED, TERRAIN_GROUP
 from sandbox.physics.solvers.contact.gauss_seidel import (
@@ -204,17 +197,11 @@ def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
 
 
 @inner_kernel
-def _part_speed(gap: float, h: float) -> float:
-    # At what speed what penetrates is to part [m/s].
-    return min(max(0.0, -PENETRATION_SHARE * gap / h), FASTEST_PUSH)
-
-
-@inner_kernel
 def _stored(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> float:
     # What it costs to bring what penetrates to the velocity at which it is to part [J].
     if not (contacts.gap[c] < 0.0 and terms.normal[c] > 0.0):
         return 0.0
-    speed = _part_speed(contacts.gap[c], h)
+    speed = min(max(0.0, -PENETRATION_SHARE * contacts.gap[c] / h), FASTEST_PUSH)
     return 0.5 * speed * speed / terms.normal[c]
 
 
@@ -269,7 +256,7 @@ def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: Sys
 
 
 @inner_kernel
-def limit_pushes(contacts: Contacts, workspace: IslandWorkspace, h: float) -> None:
+def limit_pushes(contacts: Contacts, workspace: IslandWorkspace) -> None:
     """Let what penetrates part no faster than budgets can pay for."""
     # A push at speed u beyond that at which its last impulse J rests costs u^2 / (2 R) + J u.
     islands, terms = workspace.islands, workspace.terms

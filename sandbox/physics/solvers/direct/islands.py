@@ -4,9 +4,9 @@ Each island is solved as if it were alone in the world: what does not touch, cha
 and joints lie one behind another, and are numbered within the island.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new_floats, new_slots
+from sandbox.physics.arena import Arena, is_full, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.components import root_of, united
@@ -44,46 +44,46 @@ class BodyIslands(NamedTuple):
     the blocks of bodies.
     """
 
-    counts: Slots  # (5,): how many there are
-    body: Slots  # their numbers
-    free: Slots  # slots of particles
-    member: Slots  # (n,) by particle, -1: none
-    row: Slots  # (n,) by particle: its row in the matrix, -1: none
-    mass: Floats  # [kg]: by member, as all down to fresh
-    energy0: Floats  # [J]: where the step begins
-    budget: Floats  # [J]: in its energy budget
-    energy: Floats  # [J]: where the step ends
-    debt: Floats  # [J]: the most it may owe
-    ahead: Floats  # [J]: work of forces in half a step at v'
-    moves: Floats  # [J]: KE(v')
-    rises: Floats  # [J]: what it seems to gain if it is stopped
-    fresh: Flags  # its budget is begun for all of it
-    misfit: Floats  # by touched body, as all down to by_mass
-    due: Flags  # to be solved again
-    rigid: Flags  # all its springs are
-    firm: Flags  # all its springs are
-    pressed: Flags  # contacts press it by far more than forces do, and no joint acts on it
-    still: Flags  # pressed and slow
-    driven: Flags  # a joint acts on it
-    by_mass: Flags  # it has no block, see DEAREST_BLOCK
-    tally: FloatRows  # (islands, TALLIED) [J]: see TOTAL
-    way: Slots  # by island: see system.py
-    v_free: FloatRows  # [m/s] by row: velocities without contacts
-    impulse: FloatRows  # [N s] by row: of contacts and joints; then the change by it [m/s]
-    v0: FloatRows  # [m/s] (n,) by particle: velocities without contacts
-    delta_v: FloatRows  # [m/s] (n,): what contacts add
-    label: Slots  # label, root, marked: scratch
-    root: Slots
-    marked: Flags
+    counts: Annotated[Slots, f"{COUNTED}"]  # (5,): how many there are
+    body: Annotated[Slots, "bodies"]  # their numbers
+    free: Annotated[Slots, "particles"]  # slots of particles
+    member: Annotated[Slots, "particles"]  # (n,) by particle, -1: none
+    row: Annotated[Slots, "particles"]  # (n,) by particle: its row in the matrix, -1: none
+    mass: Annotated[Floats, "members"]  # [kg]: by member, as all down to fresh
+    energy0: Annotated[Floats, "members"]  # [J]: where the step begins
+    budget: Annotated[Floats, "members"]  # [J]: in its energy budget
+    energy: Annotated[Floats, "members"]  # [J]: where the step ends
+    debt: Annotated[Floats, "members"]  # [J]: the most it may owe
+    ahead: Annotated[Floats, "members"]  # [J]: work of forces in half a step at v'
+    moves: Annotated[Floats, "members"]  # [J]: KE(v')
+    rises: Annotated[Floats, "members"]  # [J]: what it seems to gain if it is stopped
+    fresh: Annotated[Flags, "members"]  # its budget is begun for all of it
+    misfit: Annotated[Floats, "bodies"]  # by touched body, as all down to by_mass
+    due: Annotated[Flags, "bodies"]  # to be solved again
+    rigid: Annotated[Flags, "bodies"]  # all its springs are
+    firm: Annotated[Flags, "bodies"]  # all its springs are
+    pressed: Annotated[Flags, "bodies"]  # contacts press it by far more than forces do, and no joint acts on it
+    still: Annotated[Flags, "bodies"]  # pressed and slow
+    driven: Annotated[Flags, "bodies"]  # a joint acts on it
+    by_mass: Annotated[Flags, "bodies"]  # it has no block, see DEAREST_BLOCK
+    tally: Annotated[FloatRows, f"members, {TALLIED}"]  # (islands, TALLIED) [J]: see TOTAL
+    way: Annotated[Slots, "members"]  # by island: see system.py
+    v_free: Annotated[FloatRows, "rows, 2"]  # [m/s] by row: velocities without contacts
+    impulse: Annotated[FloatRows, "rows, 2"]  # [N s] by row: of contacts and joints; then the change by it [m/s]
+    v0: Annotated[FloatRows, "particles, 2"]  # [m/s] (n,) by particle: velocities without contacts
+    delta_v: Annotated[FloatRows, "particles, 2"]  # [m/s] (n,): what contacts add
+    label: Annotated[Slots, "members"]  # label, root, marked: scratch
+    root: Annotated[Slots, "members"]
+    marked: Annotated[Flags, "particles"]
 
 
 class IslandLists(NamedTuple):
     """Where the bodies, free particles and joints of each island begin, (i + 1,) each; counts (5 i,): as in `alone`."""
 
-    body: Slots
-    free: Slots
-    joint: Slots
-    counts: Slots
+    body: Annotated[Slots, "islands + 1"]
+    free: Annotated[Slots, "islands + 1"]
+    joint: Annotated[Slots, "islands + 1"]
+    counts: Annotated[Slots, f"{COUNTED} * islands"]
 
 
 class IslandWorkspace(NamedTuple):
@@ -102,34 +102,19 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
     """Lay out islands and blocks for a system, in a world of so many particles; the room of blocks is made apart."""
     bodies, free_rows = system.bodies.lowest.shape[0], system.matrix.diagonal.shape[0]
     members = bodies + particles
-    islands = BodyIslands(
-        new_slots(arena, COUNTED), new_slots(arena, bodies), new_slots(arena, particles),
-        new_slots(arena, particles), new_slots(arena, particles), new_floats(arena, members),
-        new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
-        new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
-        new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
-        new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
-        new_float_rows(arena, members, TALLIED), new_slots(arena, members),
-        new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2), new_float_rows(arena, particles, 2),
-        new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
-        new_flags(arena, particles),
-    )  # fmt: skip
+    islands = new_tuple(BodyIslands, arena, bodies=bodies, particles=particles, members=members, rows=free_rows)
     set_field(out, "islands", islands)
-    set_field(out, "lists", IslandLists(
-        new_slots(arena, members + 1), new_slots(arena, members + 1), new_slots(arena, members + 1),
-        new_slots(arena, COUNTED * members),
-    ))  # fmt: skip
-    place, point, block = new_slots(arena, particles), new_slots(arena, free_rows), new_slots(arena, particles)
-    delassus = out.delassus
-    set_field(delassus, "block", block)
-    set_field(delassus, "place", place)
-    set_field(delassus, "point", point)
-    set_field(delassus, "start", new_slots(arena, bodies + 1))
-    set_field(delassus, "base", new_slots(arena, bodies + 1))
+    set_field(out, "lists", new_tuple(IslandLists, arena, islands=members))
+    given = out.delassus
+    delassus = new_tuple(
+        Delassus, arena, numbers=given.numbers, columns=given.columns, joints=given.joints, particles=particles,
+        blocks=bodies, rows=free_rows,
+    )  # fmt: skip
+    set_field(out, "delassus", delassus)
     if is_full(arena):
         return
     for p in range(particles):
-        islands.row[p] = islands.member[p] = block[p] = place[p] = -1
+        islands.row[p] = islands.member[p] = delassus.block[p] = delassus.place[p] = -1
     for row in range(free_rows):
         islands.row[system.rows.particle[row]] = row
 

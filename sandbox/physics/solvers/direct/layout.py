@@ -3,7 +3,7 @@
 Symbolic work alone: made again when topology or pins change, no part of a world's state.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -13,13 +13,12 @@ from sandbox.physics.arena import (
     is_full,
     mark,
     new_flags,
-    new_float_rows,
-    new_floats,
+    new_float_tables,
     new_slot_rows,
     new_slots,
     new_tuple,
 )
-from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.marks import LAW_NISSEN
@@ -42,17 +41,18 @@ from sandbox.physics.solvers.linear.elimination import (
     SMALL,
     WIDEST_NARROW,
     Dissection,
+    Elimination,
     Links,
     Tuning,
     order_for_elimination,
 )
 from sandbox.physics.solvers.linear.elimination import COUNTS as FOUND_COUNTS
-from sandbox.physics.solvers.linear.fronts import FrontBlocks, Fronts, block_in_front, new_fronts
+from sandbox.physics.solvers.linear.fronts import Fronts, block_in_front, new_fronts
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix, block_below, new_matrix
 from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import list_by_key, place_among, sort_by_key
-from sandbox.physics.untangling.jellies import Jellies, group_triangles
-from sandbox.physics.untangling.triangle_clamp import lay_out_collides, lay_out_triangles
+from sandbox.physics.untangling.jellies import Triangles, group_triangles
+from sandbox.physics.untangling.triangle_clamp import ClampedTriangles, count_with_gaps, fill_triangles
 
 # Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
@@ -68,83 +68,34 @@ NO_PIVOT, SEVERAL_PIVOTS = -1, -2
 class MatrixContents(NamedTuple):
     """What is in the matrix, slots ascending, in arrays with room for all there is."""
 
-    spring: Slots
-    constraint: Slots  # (k,): those with a free corner
-    start: Slots
-    corner: Slots  # corners of constraint i: corner[start[i]:start[i + 1]]
-    particle: Slots  # free ones, which are the nodes, then pinned ones
-    number: Slots  # (n,): place of a particle in that, -1: none
-    link_a: Slots  # nodes that are joined: of a narrow constraint all,
-    link_b: Slots  # of a wide one each free corner and the next free one, past the pinned
-    x: Floats  # [m]: where nodes were created
-    y: Floats
+    spring: Annotated[Slots, "springs"]
+    constraint: Annotated[Slots, "constraints"]  # (k,): those with a free corner
+    start: Annotated[Slots, "constraints + 1"]
+    corner: Annotated[Slots, "corners"]  # corners of constraint i: corner[start[i]:start[i + 1]]
+    particle: Annotated[Slots, "particles"]  # free ones, which are the nodes, then pinned ones
+    number: Annotated[Slots, "particles"]  # (n,): place of a particle in that, -1: none
+    link_a: Annotated[Slots, "springs + corners"]  # nodes that are joined: of a narrow constraint all,
+    link_b: Annotated[Slots, "springs + corners"]  # of a wide one each free corner and the next free one
+    x: Annotated[Floats, "particles"]  # [m]: where nodes were created
+    y: Annotated[Floats, "particles"]
 
 
 class Lying(NamedTuple):
-    """What is known of the matrix: its order of elimination, see Elimination, its sparse columns, its fronts."""
+    """What is known of the matrix: its order of elimination, its sparse columns, its fronts."""
 
-    order: Slots
-    rank: Slots
-    body: Slots
-    first_row: Slots
-    lowest: Slots
-    column_start: Slots
-    row: Slots
-    fronts: FrontBlocks
-
-
-class Places(NamedTuple):
-    """What is to be found: see Rows, Bodies, Springs and Constraints."""
-
-    particle: Slots
-    row_start: Slots
-    spring_start: Slots
-    constraint_start: Slots
-    lowest: Slots
-    pivot: Slots
-    anchored: Flags
-    spring: Slots
-    row_a: Slots
-    row_b: Slots
-    spring_block: Slots
-    constraint: Slots
-    kind: Slots
-    first: Slots
-    row: Slots
-    corner: Slots
-    block: SlotRows
-    wide: Slots
+    order: Elimination
+    matrix: Matrix
+    fronts: Fronts
 
 
 class PlaceScratch(NamedTuple):
     """Scratch for springs or constraints (k,), and for lists by row or body: start."""
 
-    key: Slots
-    low: Slots
-    order: Slots
-    items: Slots
-    start: Slots
-
-
-class SystemTriangles(NamedTuple):
-    """The constraints that are areas of three corners (t,), their rows (t, 3), and whether their forms run
-    counter-clockwise."""
-
-    constraint: Slots
-    row: SlotRows
-    is_left: Flags
-
-
-class PlacedConstraints(NamedTuple):
-    """Constraints by body, see Constraints, and the first of each body."""
-
-    slot: Slots
-    kind: Slots
-    first: Slots
-    row: Slots
-    corner: Slots
-    wide: Slots
-    constraint_start: Slots
+    key: Annotated[Slots, "longest"]
+    low: Annotated[Slots, "longest"]
+    order: Annotated[Slots, "longest"]
+    items: Annotated[Slots, "longest"]
+    start: Annotated[Slots, "rows + 1"]
 
 
 def tuning() -> Tuning:
@@ -174,39 +125,23 @@ def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, 
     matrix = new_matrix(nodes, small.order[: found[SMALL]], small.columns, made.row_of, arena)
     if is_full(arena):
         return
-    blocks = FrontBlocks(
-        fronts.of_row, fronts.width, fronts.base, fronts.first, fronts.last, fronts.border_start, fronts.border
-    )
-    lying = Lying(
-        made.order, made.rank, made.body, made.first_row, made.lowest, matrix.column_start, matrix.row, blocks
-    )
-    places = places_of(state, counts, bodies, tuned.whole[WIDEST_NARROW], chosen, lying, arena)
     set_field(out, "fronts", fronts)
     set_field(out, "matrix", matrix)
-    # All that follows is ready for a step; of wide constraints a body has most_wide at most.
     work = work_of_bodies(bodies, made.first_row, fronts, matrix, arena)
-    blocks_of_rows = new_tuple(
-        Bodies, arena, work=work, row_start=places.row_start, spring_start=places.spring_start,
-        constraint_start=places.constraint_start, lowest=places.lowest, pivot=places.pivot, anchored=places.anchored,
-        bodies=places.lowest.shape[0],
-    )  # fmt: skip
-    rows = new_tuple(Rows, arena, particle=places.particle, rows=places.particle.shape[0])
-    springs = new_tuple(
-        Springs, arena, slot=places.spring, row_a=places.row_a, row_b=places.row_b, block=places.spring_block,
-        springs=places.spring.shape[0],
-    )  # fmt: skip
-    most_wide = counts[MOST_WIDE]
+    set_field(out, "bodies", new_tuple(Bodies, arena, work=work, bodies=bodies))
+    set_field(out, "rows", new_tuple(Rows, arena, rows=nodes + counts[ANCHORS]))
+    set_field(out, "springs", new_tuple(Springs, arena, springs=counts[SPRINGS]))
     constraints = new_tuple(
-        Constraints, arena, slot=places.constraint, kind=places.kind, first=places.first, row=places.row,
-        corner=places.corner, block=places.block, wide=places.wide, constraints=places.constraint.shape[0],
-        corners=places.row.shape[0], most_wide=most_wide, answered=nodes if most_wide > 0 else 0,
+        Constraints, arena, constraints=counts[CONSTRAINTS], corners=counts[CORNERS], most_wide=0, answered=0
     )  # fmt: skip
-    set_field(out, "bodies", blocks_of_rows)
-    set_field(out, "rows", rows)
-    set_field(out, "springs", springs)
     set_field(out, "constraints", constraints)
+    _place(state, counts, tuned.whole[WIDEST_NARROW], chosen, Lying(made, matrix, fronts), arena, out)
+    # All that follows is ready for a step; of wide constraints a body has most_wide at most.
+    most_wide = counts[MOST_WIDE]
+    response = new_float_tables(arena, most_wide, nodes if most_wide > 0 else 0, 2)
+    set_field(out.constraints, "response", response)
     if not is_full(arena):
-        lay_out_groups(state, places.constraint_start, arena, out)
+        lay_out_groups(state, arena, out)
 
 
 @inner_kernel
@@ -221,7 +156,7 @@ def work_of_bodies(bodies: int, first_row: Slots, fronts: Fronts, matrix: Matrix
             if front >= 0:
                 for stage in range(fronts.stages[front, 0], fronts.stages[front, 1]):
                     work[b] += fronts.stage_work[stage, 0]
-        work[bodies] = worth_of_sharing(0, bodies, work[:0], work)
+        work[bodies] = worth_of_sharing(bodies, work[:0], work)
     return work
 
 
@@ -231,11 +166,8 @@ def chosen_for_matrix(state: State, unlimited: Flags, narrow: int, counts: Slots
     particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
     corners = state.corner_particle.shape[0]
     # Of c corners a narrow constraint has c links, and a wide one fewer.
-    links = springs + corners
-    chosen = MatrixContents(
-        new_slots(arena, springs), new_slots(arena, constraints), new_slots(arena, constraints + 1),
-        new_slots(arena, corners), new_slots(arena, particles), new_slots(arena, particles), new_slots(arena, links),
-        new_slots(arena, links), new_floats(arena, particles), new_floats(arena, particles),
+    chosen = new_tuple(
+        MatrixContents, arena, particles=particles, springs=springs, constraints=constraints, corners=corners
     )  # fmt: skip
     if not is_full(arena):
         for p in range(chosen.number.shape[0]):
@@ -343,101 +275,76 @@ def cut_to(dissected: Dissection, fronts: int, borders: int) -> Dissection:
 
 
 @inner_kernel
-def places_of(
-    state: State, counts: Slots, bodies: int, narrow: int, chosen: MatrixContents, lying: Lying, arena: Arena
-) -> Places:
-    """Where all lies in the system of so many bodies, and in counts[MOST_WIDE] how many wide ones a body has at most.
-
-    counts, narrow: see chosen_for_matrix.
-    """
-    springs, constraints, corners, rows = counts[SPRINGS], counts[CONSTRAINTS], counts[CORNERS], counts[NODES]
-    places = Places(
-        new_slots(arena, rows + counts[ANCHORS]), new_slots(arena, bodies + 1), new_slots(arena, bodies + 1),
-        new_slots(arena, bodies + 1), new_slots(arena, bodies), new_slots(arena, bodies), new_flags(arena, bodies),
-        new_slots(arena, springs), new_slots(arena, springs), new_slots(arena, springs), new_slots(arena, springs),
-        new_slots(arena, constraints), new_slots(arena, constraints), new_slots(arena, constraints + 1),
-        new_slots(arena, corners), new_slots(arena, corners), new_slot_rows(arena, constraints, 3),
-        new_slots(arena, constraints),
-    )  # fmt: skip
-    start, longest = mark(arena), max(springs, constraints)
-    work = PlaceScratch(
-        new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
-        new_slots(arena, rows + 1),
-    )  # fmt: skip
-    if not is_full(arena):
-        nodes = lying.rank.shape[0]
-        for row in range(nodes):
-            places.particle[row] = chosen.particle[lying.order[row]]
-        for k in range(nodes, nodes + counts[ANCHORS]):
-            places.particle[k] = chosen.particle[k]
-        places.row_start[0] = 0
-        for b in range(bodies):
-            places.row_start[b + 1] = lying.first_row[b + 1]
-            places.lowest[b] = chosen.particle[lying.lowest[b]]
-            places.pivot[b] = NO_PIVOT
-            places.anchored[b] = False
-        _place_springs(counts[SPRINGS], bodies, state, chosen, lying, places, work)
-        count = counts[CONSTRAINTS]
-        nodes = lying.rank.shape[0]
-        for k in range(count):
-            low = nodes
-            for at in range(chosen.start[k], chosen.start[k + 1]):
-                low = min(low, _row_of(state.corner_particle[chosen.corner[at]], chosen, lying))
-            work.key[k] = lying.body[low]
-        list_by_key(work.key, count, bodies, places.constraint_start, work.order)
-        counts[MOST_WIDE] = _place_constraints(counts[CONSTRAINTS], narrow, state, chosen, lying, places, work)
-        give_back(arena, start)
-    return places
+def _place(
+    state: State, counts: Slots, narrow: int, chosen: MatrixContents, lying: Lying, arena: Arena, out: System
+) -> None:
+    # Where all lies in the system, and in counts[MOST_WIDE] how many wide constraints a body has at most.
+    nodes, count, bodies = counts[NODES], counts[CONSTRAINTS], out.bodies.lowest.shape[0]
+    start, longest = mark(arena), max(counts[SPRINGS], count)
+    work = new_tuple(PlaceScratch, arena, longest=longest, rows=nodes)
+    if is_full(arena):
+        return
+    for row in range(nodes):
+        out.rows.particle[row] = chosen.particle[lying.order.order[row]]
+    for k in range(nodes, nodes + counts[ANCHORS]):
+        out.rows.particle[k] = chosen.particle[k]
+    for b in range(bodies):
+        out.bodies.row_start[b + 1] = lying.order.first_row[b + 1]
+        out.bodies.lowest[b] = chosen.particle[lying.order.lowest[b]]
+        out.bodies.pivot[b] = NO_PIVOT
+    _place_springs(counts[SPRINGS], bodies, state, chosen, lying, out, work)
+    for k in range(count):
+        low = nodes
+        for at in range(chosen.start[k], chosen.start[k + 1]):
+            low = min(low, _row_of(state.corner_particle[chosen.corner[at]], chosen, lying))
+        work.key[k] = lying.order.body[low]
+    list_by_key(work.key, count, bodies, out.bodies.constraint_start, work.order)
+    counts[MOST_WIDE] = _place_constraints(count, narrow, state, chosen, lying, out, work)
+    give_back(arena, start)
 
 
 @inner_kernel
 def _place_springs(
-    count: int,
-    bodies: int,
-    state: State,
-    chosen: MatrixContents,
-    lying: Lying,
-    places: Places,
-    work: PlaceScratch,
+    count: int, bodies: int, state: State, chosen: MatrixContents, lying: Lying, out: System, work: PlaceScratch
 ) -> None:
     # Body by body; those of a large one in the order of its rows: what a step reads together then lies together.
-    nodes = lying.rank.shape[0]
+    nodes, springs = lying.order.rank.shape[0], out.springs
     for k in range(count):
         s = chosen.spring[k]
         row_a = _row_of(state.particle_a[s], chosen, lying)
         row_b = _row_of(state.particle_b[s], chosen, lying)
         low = min(row_a, row_b)
-        work.key[k] = lying.body[low]
+        work.key[k] = lying.order.body[low]
         work.low[k] = low if lying.fronts.of_row[low] >= 0 else 0
-        _anchor(work.key[k], max(row_a, row_b), nodes, places)
+        _anchor(work.key[k], max(row_a, row_b), nodes, out.bodies)
     list_by_key(work.low, count, nodes, work.start, work.items)
-    sort_by_key(work.key, work.items, count, bodies, places.spring_start, work.order)
+    sort_by_key(work.key, work.items, count, bodies, out.bodies.spring_start, work.order)
     for at in range(count):
         s = chosen.spring[work.order[at]]
         row_a = _row_of(state.particle_a[s], chosen, lying)
         row_b = _row_of(state.particle_b[s], chosen, lying)
-        places.spring[at] = s
-        places.row_a[at] = row_a
-        places.row_b[at] = row_b
-        places.spring_block[at] = _block_of(row_a, row_b, lying)
+        springs.slot[at] = s
+        springs.row_a[at] = row_a
+        springs.row_b[at] = row_b
+        springs.block[at] = _block_of(row_a, row_b, lying)
 
 
 @inner_kernel
 def _row_of(p: int, chosen: MatrixContents, lying: Lying) -> int:
     k = chosen.number[p]
-    nodes = lying.rank.shape[0]
-    return lying.rank[k] if k < nodes else k
+    nodes = lying.order.rank.shape[0]
+    return lying.order.rank[k] if k < nodes else k
 
 
 @inner_kernel
-def _anchor(b: int, row: int, nodes: int, places: Places) -> None:
+def _anchor(b: int, row: int, nodes: int, bodies: Bodies) -> None:
     # Note a row of something that a body has, which may be pinned.
     if row >= nodes:
-        places.anchored[b] = True
-        if places.pivot[b] == NO_PIVOT:
-            places.pivot[b] = row
-        elif places.pivot[b] != row:
-            places.pivot[b] = SEVERAL_PIVOTS
+        bodies.anchored[b] = True
+        if bodies.pivot[b] == NO_PIVOT:
+            bodies.pivot[b] = row
+        elif bodies.pivot[b] != row:
+            bodies.pivot[b] = SEVERAL_PIVOTS
 
 
 @inner_kernel
@@ -445,104 +352,90 @@ def _block_of(row_a: int, row_b: int, lying: Lying) -> int:
     # The block that two rows share; -1: one is pinned.
     low = min(row_a, row_b)
     high = max(row_a, row_b)
-    if high >= lying.rank.shape[0]:
+    if high >= lying.order.rank.shape[0]:
         return -1
     if lying.fronts.of_row[low] >= 0:
         return block_in_front(low, high, lying.fronts)
-    return block_below(low, high, lying.column_start, lying.row)
+    return block_below(low, high, lying.matrix.column_start, lying.matrix.row)
 
 
 @inner_kernel
 def _place_constraints(
-    count: int,
-    narrow: int,
-    state: State,
-    chosen: MatrixContents,
-    lying: Lying,
-    places: Places,
-    work: PlaceScratch,
+    count: int, narrow: int, state: State, chosen: MatrixContents, lying: Lying, out: System, work: PlaceScratch
 ) -> int:
     # Body by body; how many wide ones a body has at most.
-    nodes = lying.rank.shape[0]
+    nodes, constraints = lying.order.rank.shape[0], out.constraints
     top = 0
     most = 0
     number = 0
-    places.first[0] = 0
+    constraints.first[0] = 0
     for at in range(count):
         k = work.order[at]
         b = work.key[k]
-        if at == places.constraint_start[b]:
+        if at == out.bodies.constraint_start[b]:
             number = 0
         first, last = chosen.start[k], chosen.start[k + 1]
-        places.constraint[at] = chosen.constraint[k]
-        places.kind[at] = state.constraint_kind[chosen.constraint[k]]
+        constraints.slot[at] = chosen.constraint[k]
+        constraints.kind[at] = state.constraint_kind[chosen.constraint[k]]
         for corner in range(first, last):
             row = _row_of(state.corner_particle[chosen.corner[corner]], chosen, lying)
-            places.corner[top + corner - first] = chosen.corner[corner]
-            places.row[top + corner - first] = row
-            _anchor(b, row, nodes, places)
+            constraints.corner[top + corner - first] = chosen.corner[corner]
+            constraints.row[top + corner - first] = row
+            _anchor(b, row, nodes, out.bodies)
         is_narrow = last - first <= narrow
         for side in range(3):
-            row = places.row[top + side]
-            following = places.row[top + (side + 1) % 3]
-            places.block[at, side] = _block_of(row, following, lying) if is_narrow else -1
-        places.wide[at] = -1 if is_narrow else number
+            row = constraints.row[top + side]
+            following = constraints.row[top + (side + 1) % 3]
+            constraints.block[at, side] = _block_of(row, following, lying) if is_narrow else -1
+        constraints.wide[at] = -1 if is_narrow else number
         if not is_narrow:
             number += 1
             most = max(most, number)
         top += last - first
-        places.first[at + 1] = top
+        constraints.first[at + 1] = top
     return most
 
 
 @inner_kernel
-def lay_out_groups(state: State, constraint_start: Slots, arena: Arena, out: System) -> None:
-    """Lay out the groups of a system's constraints, and its triangles; constraint_start (b+1,): first of each body."""
-    made, count, rows = out.constraints, out.constraints.slot.shape[0], out.rows.particle.shape[0]
-    placed = PlacedConstraints(made.slot, made.kind, made.first, made.row, made.corner, made.wide, constraint_start)
-    capacity = SystemTriangles(new_slots(arena, count), new_slot_rows(arena, count, 3), new_flags(arena, count))
+def lay_out_groups(state: State, arena: Arena, out: System) -> None:
+    """Lay out the groups of a system's constraints, and its triangles."""
+    placed, rows, count = out.constraints, out.rows, out.constraints.slot.shape[0]
+    constraint, corners, is_left = new_slots(arena, count), new_slot_rows(arena, count, 3), new_flags(arena, count)
     if is_full(arena):
         return
     areas = 0
-    for k in range(placed.slot.shape[0]):
+    for k in range(count):
         if placed.kind[k] == AREA and placed.wide[k] < 0:
-            capacity.constraint[areas] = k
-            capacity.is_left[areas] = state.constraint_rest[placed.slot[k], 1] > 0.0
+            constraint[areas] = k
+            is_left[areas] = state.constraint_rest[placed.slot[k], 1] > 0.0
             for c in range(3):
-                capacity.row[areas, c] = placed.row[placed.first[k] + c]
+                corners[areas, c] = placed.row[placed.first[k] + c]
             areas += 1
-    found = SystemTriangles(capacity.constraint[:areas], capacity.row[:areas], capacity.is_left[:areas])
-    jellies = group_triangles(found.row, found.is_left, state.owner.shape[0], arena)
-    members, kinds = jellies.particle.shape[0], jellies.first.shape[0]
-    groups = ShapeMatchGroups(
-        new_slots(arena, constraint_start.shape[0]), jellies.start, jellies.particle,
-        new_float_rows(arena, members, 2), new_slots(arena, kinds), new_slots(arena, count),
-        new_slot_rows(arena, count, 3), jellies.inner, jellies.fan, jellies.fan_start, new_slots(arena, members),
-        new_flags(arena, kinds), new_flags(arena, kinds),
+    jellies = group_triangles(corners[:areas], is_left[:areas], state.owner.shape[0], arena)
+    found = Triangles(constraint[:areas], corners[:areas], jellies)
+    groups = new_tuple(
+        ShapeMatchGroups, arena, start=jellies.start, row=jellies.particle, inner=jellies.inner, fan=jellies.fan,
+        fan_start=jellies.fan_start, bodies=out.bodies.lowest.shape[0], members=jellies.particle.shape[0],
+        groups=jellies.first.shape[0], constraints=count,
+    )  # fmt: skip
+    triangles = new_tuple(
+        ClampedTriangles, arena, rest=placed.rest, position=rows.position, velocity=rows.v, mass=rows.mass,
+        inverse_mass=rows.inverse_mass, inverted=groups.inverted, terrain=state.terrain,
+        triangles=count_with_gaps(found), rests=count, rows=rows.particle.shape[0],
     )  # fmt: skip
     set_field(out, "shape_match_groups", groups)
-    lay_out_triangles(found.constraint, found.row, jellies, count, rows, arena, out.triangles)
-    lay_out_collides(found.row, state, out.rows.particle, arena, out.triangles)
-    if is_full(arena):
-        return
-    fill_groups(placed, found, jellies, state.corner_form, groups)
-    set_field(out.triangles, "rest", made.rest)
-    set_field(out.triangles, "position", out.rows.position)
-    set_field(out.triangles, "velocity", out.rows.v)
-    set_field(out.triangles, "mass", out.rows.mass)
-    set_field(out.triangles, "inverse_mass", out.rows.inverse_mass)
-    set_field(out.triangles, "inverted", groups.inverted)
+    set_field(out, "triangles", triangles)
+    if not is_full(arena):
+        fill_triangles(found, state, rows.particle, arena, triangles)
+        fill_groups(placed, out.bodies.constraint_start, found, state.corner_form, groups)
 
 
 @inner_kernel
 def fill_groups(
-    placed: PlacedConstraints,
-    found: SystemTriangles,
-    jellies: Jellies,
-    corner_form: FloatRows,
-    groups: ShapeMatchGroups,
+    placed: Constraints, constraint_start: Slots, found: Triangles, corner_form: FloatRows, groups: ShapeMatchGroups
 ) -> None:
     """Fill in where the groups lie and what their forms are; corner_form [m] (q, 2): of a world's corners."""
+    jellies = found.jellies
     for k in range(groups.group.shape[0]):
         groups.group[k] = -1
         for c in range(3):
@@ -556,7 +449,7 @@ def fill_groups(
     for g in range(groups.sample.shape[0]):
         groups.sample[g] = found.constraint[jellies.first[g]]
     for b in range(groups.of_body.shape[0]):
-        groups.of_body[b] = place_among(placed.constraint_start[b], groups.sample, 0, groups.sample.shape[0])
+        groups.of_body[b] = place_among(constraint_start[b], groups.sample, 0, groups.sample.shape[0])
     for i in range(groups.row.shape[0]):
         t = jellies.corner[i] // 3
         corner = placed.corner[placed.first[found.constraint[t]] + jellies.corner[i] % 3]

@@ -26,7 +26,6 @@ from sandbox.physics.solvers.direct.constraint_terms import (
     constraint_objective,
     constraint_potential,
     constraint_slope,
-    floor_potential,
     gradient_dot,
     linearise_constraints,
     load_constraints,
@@ -41,14 +40,13 @@ from sandbox.physics.solvers.direct.spring_terms import (
     linearise_springs,
     load_springs,
     push_springs,
-    restore_springs,
     spring_objective,
     spring_potential,
     spring_slope,
     unrestored_energy,
     update_springs,
 )
-from sandbox.physics.solvers.direct.system import Rows, Span, System, copy, hold_triangles, kinetic, scale
+from sandbox.physics.solvers.direct.system import Rows, Span, System, clear, copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts, solve_fronts
 from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
@@ -176,7 +174,7 @@ def solve_linear(span: Span, system: System) -> None:
         assemble_springs_in_fronts(span, system)
         if constrained:
             assemble_constraints(span, system, True)
-        solve_fronts(False, span.first_row, span.last_row, fronts, rows.delta_v)
+        solve_fronts(False, span.last_row, fronts, rows.delta_v)
     else:
         for r in range(span.first_row, span.last_row):
             mass = rows.inertia[r]  # (9)
@@ -225,9 +223,7 @@ def _take_in_wide(span: Span, system: System) -> None:
         number = constraints.wide[k]
         if number < 0:
             continue
-        for r in range(span.first_row, span.last_row):
-            rows.delta_v[r, 0] = 0.0
-            rows.delta_v[r, 1] = 0.0
+        clear(span, rows.delta_v)
         for c in range(constraints.first[k], constraints.first[k + 1]):
             r = constraints.row[c]
             if r < free_count:
@@ -249,7 +245,7 @@ def _substitute(span: Span, system: System) -> None:
     # Without wide constraints.
     rows, fronts = system.rows, system.fronts
     if fronts.of_row[span.first_row] >= 0:
-        solve_fronts(True, span.first_row, span.last_row, fronts, rows.delta_v)
+        solve_fronts(True, span.last_row, fronts, rows.delta_v)
     else:
         back_substitute(span.first_row, span.last_row, system.matrix, rows.delta_v)
 
@@ -324,24 +320,19 @@ def find_tension(span: Span, system: System, h: float) -> None:
 @inner_kernel
 def potential(span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float) -> float:
     """Energy of one body's springs and constraints at position + time velocity [J]."""
-    springs = system.springs
-    return spring_potential(span, system, position, velocity, springs.k_h2, springs.rest, time, h) + _constraint_energy(
-        span, system, position, velocity, time, h
-    )
+    of_springs = spring_potential(span, system, position, velocity, system.springs.rest, time, h)
+    return of_springs + constraint_potential(span, system, position, velocity, time, h)
 
 
 @inner_kernel
 def returnable(span: Span, system: System, h: float) -> float:
-    """What a body's springs and constraints can give back after the step [J].
+    """What a body's springs, which are to be restored, and constraints can give back after the step [J].
 
     |D|^2_M / 2 of the motion D that restores them, which the factor of the last linear solve finds, and what they hold
     then.
     """
     rows = system.rows
-    for r in range(span.first_row, span.last_row):
-        rows.delta_v[r, 0] = 0.0
-        rows.delta_v[r, 1] = 0.0
-    restore_springs(span, system, h)
+    clear(span, rows.delta_v)
     push_springs(span, system)
     if span.last_constraint > span.first_constraint:
         restore_constraints(span, system, h)
@@ -352,22 +343,11 @@ def returnable(span: Span, system: System, h: float) -> float:
 
 
 @inner_kernel
-def _constraint_energy(
-    span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float
-) -> float:
-    # With what is below its floor.
-    return constraint_potential(span, system, position, velocity, system.constraints.k_h2, time, h) + floor_potential(
-        span, system, position, velocity, time, h
-    )
-
-
-@inner_kernel
 def start_potential(span: Span, system: System, h: float) -> float:
     """Energy of one body's springs and constraints before forces, pins and drives have moved [J]."""
-    rows, springs = system.rows, system.springs
-    return spring_potential(
-        span, system, rows.position, rows.start, springs.k_h2, springs.start_rest, 0.0, h
-    ) + _constraint_energy(span, system, rows.position, rows.start, 0.0, h)
+    rows = system.rows
+    of_springs = spring_potential(span, system, rows.position, rows.start, system.springs.start_rest, 0.0, h)
+    return of_springs + constraint_potential(span, system, rows.position, rows.start, 0.0, h)
 
 
 @inner_kernel

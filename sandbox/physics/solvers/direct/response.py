@@ -11,7 +11,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import Delassus
 from sandbox.physics.solvers.direct.islands import BodyIslands
 from sandbox.physics.solvers.direct.network import respond
 from sandbox.physics.solvers.direct.rigid_turn import add_torque
-from sandbox.physics.solvers.direct.system import Constraints, Rows, Span, System
+from sandbox.physics.solvers.direct.system import Constraints, Rows, Span, System, clear
 from sandbox.physics.solvers.linear.fronts import subtract_pair
 
 
@@ -79,9 +79,7 @@ def _load_column_wise(k: int, span: Span, system: System, delassus: Delassus, ro
     points = delassus.start[k + 1] - first
     for i in range(points):
         for axis in range(2):
-            for r in range(span.first_row, span.last_row):
-                vector[r, 0] = 0.0
-                vector[r, 1] = 0.0
+            clear(span, vector)
             vector[row[delassus.point[first + i]], axis] = 1.0
             respond(span, system, vector)
             for j in range(points):
@@ -121,8 +119,7 @@ def hold_block(
     rows, numbers = system.rows, delassus.numbers
     first, base = delassus.start[k], delassus.base[k]
     points = delassus.start[k + 1] - first
-    for r in range(span.first_row, span.last_row):
-        vector[r, 0] = vector[r, 1] = 0.0
+    clear(span, vector)
     add_torque(span, rows, spin, spin.inertia, vector)
     respond(span, system, vector)
     gain = 0.0
@@ -163,9 +160,7 @@ def load_answers(span: Span, system: System, joints: Joints, row: Slots, vector:
         k = actions.row[action]
         if not rows.limit[k] > 0.0:
             continue
-        for r in range(span.first_row, span.last_row):
-            vector[r, 0] = 0.0
-            vector[r, 1] = 0.0
+        clear(span, vector)
         for e in range(rows.first[k], rows.first[k + 1]):
             if actions.entry[e] == action:
                 vector[row[rows.particle[e]], 0] = rows.gradient[e, 0]

@@ -33,10 +33,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_surfaces,
     mark_calm,
 )
-from sandbox.physics.solvers.direct.energy_budget import (
-    MORE_SOLVES,
-    is_new,
-)
+from sandbox.physics.solvers.direct.energy_budget import MORE_SOLVES, is_new
 from sandbox.physics.solvers.direct.island_energy import (
     check_energy,
     clamp_free,
@@ -78,13 +75,7 @@ from sandbox.physics.solvers.direct.network import (
     solve_linear,
     update,
 )
-from sandbox.physics.solvers.direct.response import (
-    hold_block,
-    load_answers,
-    load_block,
-    load_velocities,
-    open_joints,
-)
+from sandbox.physics.solvers.direct.response import hold_block, load_answers, load_block, load_velocities, open_joints
 from sandbox.physics.solvers.direct.rigid_turn import (
     add_torque,
     hold_spin,
@@ -101,6 +92,7 @@ from sandbox.physics.solvers.direct.system import (
     System,
     hold_triangles,
     span_of,
+    store,
     worth_of_sharing,
 )
 from sandbox.physics.solvers.inputs import Inputs
@@ -193,7 +185,7 @@ def _open(
 @inner_kernel
 def _worth(islands: BodyIslands, system: System) -> int:
     # What a parallel loop over an island's bodies saves.
-    return worth_of_sharing(0, islands.counts[BODIES], islands.body, system.bodies.work)
+    return worth_of_sharing(islands.counts[BODIES], islands.body, system.bodies.work)
 
 
 @inner_kernel
@@ -267,7 +259,8 @@ def _solve_linearly(
     islands = workspace.islands
     islands.tally[0, EXCESS] = 0.0
     for solve in range(LINEAR_SOLVES + MORE_SOLVES):
-        _solve_due(workspace, system, h)
+        for lane in parallel(min(LANES, islands.counts[BODIES]), _worth(islands, system)):
+            _solve_lane(lane, workspace, system, h)
         affordable = _push_and_test(contacts, workspace, system, state, start, affordable, solve == 0, h)
         fails = not passes(islands)
         islands.way[0] = SOLVED_ON if fails else islands.way[0]
@@ -280,16 +273,9 @@ def _solve_linearly(
 
 
 @inner_kernel
-def _solve_due(workspace: IslandWorkspace, system: System, h: float) -> None:
-    # Linearise and factor the bodies that are due: their velocities without contacts, and their Delassus blocks.
-    islands = workspace.islands
-    for lane in parallel(min(LANES, islands.counts[BODIES]), _worth(islands, system)):
-        _solve_lane(lane, workspace, system, h)
-
-
-@inner_kernel
 def _solve_lane(lane: int, workspace: IslandWorkspace, system: System, h: float) -> None:
-    # Every so many bodies of an island, which share the scratch of a lane.
+    # Linearise and factor those that are due of every so many bodies, which share the scratch of a lane: their
+    # velocities without contacts, and their Delassus blocks.
     islands, count = workspace.islands, workspace.islands.counts[BODIES]
     lanes, room = min(LANES, count), workspace.delassus.columns.shape[0] // min(LANES, count)
     columns = workspace.delassus.columns[lane * room : (lane + 1) * room]
@@ -366,7 +352,7 @@ def _push_all(
     if begins:
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
-        limit_pushes(contacts, workspace, h)
+        limit_pushes(contacts, workspace)
         mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid, islands.firm)
         propagate_impacts(contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
@@ -511,14 +497,8 @@ def _find_due(islands: BodyIslands, fails: bool, misses: bool, h: float) -> bool
 
 @inner_kernel
 def _finish(islands: BodyIslands, surface: Floats, system: System, state: State) -> None:
-    bodies, rows, springs = system.bodies, system.rows, system.springs
     for k in range(islands.counts[BODIES]):
-        body = islands.body[k]
-        for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
-            state.velocity[rows.particle[r], 0] = rows.v[r, 0]
-            state.velocity[rows.particle[r], 1] = rows.v[r, 1]
-        for s in range(bodies.spring_start[body], bodies.spring_start[body + 1]):
-            state.tension[springs.slot[s]] = springs.tension[s]
+        store(span_of(system, islands.body[k]), system, state)
     for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
         p = islands.free[i]
         state.velocity[p, 0] = islands.v0[p, 0] + islands.delta_v[p, 0]

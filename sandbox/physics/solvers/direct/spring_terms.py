@@ -12,13 +12,7 @@ Jacobian of a spring's length is its direction n, at its ends with opposite sign
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.equation import (
-    SHORTEST,
-    direction,
-    implicit_impulse,
-    implicit_masses,
-    reduced_mass,
-)
+from sandbox.physics.equation import SHORTEST, direction, implicit_impulse, implicit_masses, reduced_mass
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.direct.system import Span, System
@@ -204,21 +198,30 @@ def push_springs(span: Span, system: System) -> None:
 
 
 @inner_kernel
-def restore_springs(span: Span, system: System, h: float) -> None:
+def restore_springs(span: Span, system: System, h: float) -> tuple[float, float]:
     """The impulses that bring a body's springs to their lengths from where `v` leads to, for `push_springs`.
 
-    They act along the directions of the last linear solve, whose factor is to answer.
+    They act along the directions of the last linear solve, whose factor is to answer. Returned are the energy of the
+    springs there [J], and the largest share of its length by which one is wrong.
     """
     rows, springs = system.rows, system.springs
+    energy = strain = 0.0
     for k in range(span.first_spring, span.last_spring):
         dx, dy = difference(springs.row_a[k], springs.row_b[k], rows.position)
         ux, uy = difference(springs.row_a[k], springs.row_b[k], rows.v)
         dx += h * ux
         dy += h * uy
-        springs.predicted[k] = math.sqrt(dx * dx + dy * dy) - springs.rest[k]
+        error = math.sqrt(dx * dx + dy * dy) - springs.rest[k]
+        extent = springs.rest[k] + springs.length[k]
+        if extent > SHORTEST:
+            strain = max(strain, 2.0 * abs(error) / extent)
+        springs.predicted[k] = error
         springs.tangential[k] = 0.0
         mass = reduced_mass(rows.inverse_mass[springs.row_a[k]], rows.inverse_mass[springs.row_b[k]])
-        springs.impulse[k] = -restoring_mass(springs.K[k], springs.k_h2[k], mass) * springs.predicted[k] / h
+        springs.impulse[k] = -restoring_mass(springs.K[k], springs.k_h2[k], mass) * error / h
+        error /= h
+        energy += 0.5 * springs.k_h2[k] * error * error
+    return energy, strain
 
 
 @inner_kernel
@@ -240,22 +243,6 @@ def unrestored_energy(span: Span, system: System, h: float) -> float:
         mass = reduced_mass(rows.inverse_mass[a], rows.inverse_mass[b])
         total += 0.5 * moved_mass(springs.k_h2[k], mass) * error * error
     return total
-
-
-@inner_kernel
-def largest_strain(span: Span, system: System, h: float) -> float:
-    """The largest share of its length by which a spring of a body is wrong at the end of the step."""
-    rows, springs = system.rows, system.springs
-    most = 0.0
-    for k in range(span.first_spring, span.last_spring):
-        dx, dy = difference(springs.row_a[k], springs.row_b[k], rows.position)
-        ux, uy = difference(springs.row_a[k], springs.row_b[k], rows.v)
-        dx += h * ux
-        dy += h * uy
-        extent = springs.rest[k] + springs.length[k]
-        if extent > SHORTEST:
-            most = max(most, 2.0 * abs(math.sqrt(dx * dx + dy * dy) - springs.rest[k]) / extent)
-    return most
 
 
 @scalar_kernel
@@ -371,17 +358,10 @@ def spring_slope(span: Span, system: System) -> float:
 
 @inner_kernel
 def spring_potential(
-    span: Span,
-    system: System,
-    position: FloatRows,
-    velocity: FloatRows,
-    norm: Floats,
-    rest: Floats,
-    time: float,
-    h: float,
+    span: Span, system: System, position: FloatRows, velocity: FloatRows, rest: Floats, time: float, h: float
 ) -> float:
     """Energy of one body's springs at position + time velocity [J]; rest (k,): the rest lengths it is measured from."""
-    # sum of norm x^2 / (2 h^2)
+    # sum of k h^2 x^2 / (2 h^2)
     springs = system.springs
     total = 0.0
     for k in range(span.first_spring, span.last_spring):
@@ -390,5 +370,5 @@ def spring_potential(
         dx = position[b, 0] - position[a, 0] + time * (velocity[b, 0] - velocity[a, 0])
         dy = position[b, 1] - position[a, 1] + time * (velocity[b, 1] - velocity[a, 1])
         error = (math.sqrt(dx * dx + dy * dy) - rest[k]) / h
-        total += 0.5 * norm[k] * error * error
+        total += 0.5 * springs.k_h2[k] * error * error
     return total

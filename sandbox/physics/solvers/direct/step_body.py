@@ -15,14 +15,7 @@ import math
 
 from sandbox.physics.arrays import Slots
 from sandbox.physics.equation import implicit_masses
-from sandbox.physics.geometry.rigid import (
-    RigidMotion,
-    WeightedSums,
-    best_turn,
-    centre_of,
-    with_pair,
-    with_point,
-)
+from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, best_turn, centre_of, with_pair, with_point
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel, parallel
 from sandbox.physics.marks import BANK_UNOPENED
@@ -76,6 +69,7 @@ from sandbox.physics.solvers.direct.system import (
     hold_triangles,
     kinetic,
     span_of,
+    store,
 )
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
@@ -118,17 +112,13 @@ def _step_alone(
     body: int, system: System, state: State, inputs: Inputs, touched: bool, auto_substeps: int, h: float
 ) -> None:  # fmt: skip
     # Advance one body that nothing touches.
-    bodies, rows, springs = system.bodies, system.rows, system.springs
+    bodies = system.bodies
     if touched and bodies.touched[body]:
         return
     span = span_of(system, body)
     open_body(body, span, system, state, inputs, 1.0, auto_substeps, h)
     bodies.way[body] = step_body(body, span, system, state, h)
-    for r in range(span.first_row, span.last_row):
-        state.velocity[rows.particle[r], 0] = rows.v[r, 0]
-        state.velocity[rows.particle[r], 1] = rows.v[r, 1]
-    for k in range(span.first_spring, span.last_spring):
-        state.tension[springs.slot[k]] = springs.tension[k]
+    store(span, system, state)
 
 
 @inner_kernel

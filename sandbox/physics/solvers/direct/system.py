@@ -11,6 +11,7 @@ from sandbox.physics.arrays import Flags, FloatRows, Floats, FloatTables, SlotRo
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
+from sandbox.physics.state import State
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, ClampedTriangles, clamp_triangles
 
 # Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
@@ -27,12 +28,12 @@ PASSED, SOLVED_ON, MINIMISED, SLOWED_DOWN, BY_MASS, WAYS = range(6)
 class Bodies(NamedTuple):
     """First row, spring and constraint of each body and one past the last; from touched on scratch."""
 
-    row_start: Slots
-    spring_start: Slots
-    constraint_start: Slots
-    lowest: Slots  # its free particle of lowest slot
-    pivot: Slots  # row of the one pinned particle that holds it; -1: none does, -2: several do
-    anchored: Flags
+    row_start: Annotated[Slots, "bodies + 1"]
+    spring_start: Annotated[Slots, "bodies + 1"]
+    constraint_start: Annotated[Slots, "bodies + 1"]
+    lowest: Annotated[Slots, "bodies"]  # its free particle of lowest slot
+    pivot: Annotated[Slots, "bodies"]  # row of the one pinned particle that holds it; -1: none does, -2: several do
+    anchored: Annotated[Flags, "bodies"]
     touched: Annotated[Flags, "bodies"]  # by contacts
     work: Slots  # (b + 1,): see work_of_bodies
     underdamped: Annotated[Flags, "bodies"]  # some Cs is above its Cd
@@ -50,7 +51,7 @@ class Bodies(NamedTuple):
 class Rows(NamedTuple):
     """One row for every particle that springs of the matrix touch: free ones in elimination order, then pinned ones."""
 
-    particle: Slots
+    particle: Annotated[Slots, "rows"]
     mass: Annotated[Floats, "rows"]  # [kg]
     inverse_mass: Annotated[Floats, "rows"]
     inertia: Annotated[Floats, "rows"]  # [kg]: mass, or what shape matching makes of it
@@ -69,10 +70,10 @@ class Rows(NamedTuple):
 class Springs(NamedTuple):
     """The springs of the matrix by body, and their scratch."""
 
-    slot: Slots
-    row_a: Slots  # row_a, row_b: ends
-    row_b: Slots
-    block: Slots  # that its ends share, -1: one end is pinned
+    slot: Annotated[Slots, "springs"]
+    row_a: Annotated[Slots, "springs"]  # row_a, row_b: ends
+    row_b: Annotated[Slots, "springs"]
+    block: Annotated[Slots, "springs"]  # that its ends share, -1: one end is pinned
     rest: Annotated[Floats, "springs"]  # [m]
     start_rest: Annotated[Floats, "springs"]  # [m]: rest length at the start of the step
     K: Annotated[Floats, "springs"]  # [kg]: K of the equation
@@ -91,13 +92,13 @@ class Springs(NamedTuple):
 class Constraints(NamedTuple):
     """The constraints of many corners of the matrix by body, t of them with q corners in all, and their scratch."""
 
-    slot: Slots
-    kind: Slots
-    first: Slots  # (t + 1,): where corners begin
-    row: Slots  # (q,)
-    corner: Slots  # (q,): slots
-    block: SlotRows  # (t, 3): of the pairs (0, 1), (1, 2), (2, 0) of a narrow one's corners, -1: one is pinned
-    wide: Slots  # (t,): number among the body's wide ones, -1: narrow
+    slot: Annotated[Slots, "constraints"]
+    kind: Annotated[Slots, "constraints"]
+    first: Annotated[Slots, "constraints + 1"]  # (t + 1,): where corners begin
+    row: Annotated[Slots, "corners"]  # (q,)
+    corner: Annotated[Slots, "corners"]  # (q,): slots
+    block: Annotated[SlotRows, "constraints, 3"]  # of corners (0, 1), (1, 2), (2, 0) of a narrow one, -1: one is pinned
+    wide: Annotated[Slots, "constraints"]  # (t,): number among the body's wide ones, -1: narrow
     rest: Annotated[FloatRows, "constraints, 2"]  # rest, weight: those of the step, copied
     weight: Annotated[Floats, "corners"]
     place: Annotated[FloatRows, "corners, 2"]  # as gradient and spare
@@ -120,19 +121,19 @@ class Constraints(NamedTuple):
 class ShapeMatchGroups(NamedTuple):
     """The jellies of the matrix by body: g groups of triangles that share sides, of k particles in all."""
 
-    of_body: Slots  # (b + 1,): first group of each body
+    of_body: Annotated[Slots, "bodies + 1"]  # (b + 1,): first group of each body
     start: Slots  # (g + 1,): first particle of each group
     row: Slots  # (k,)
-    form: FloatRows  # [m] (k, 2)
-    sample: Slots  # (g,): a constraint of each
-    group: Slots  # (t,) of a constraint, -1: in none
-    member: SlotRows  # (t, 3): its corners among the k
+    form: Annotated[FloatRows, "members, 2"]  # [m] (k, 2)
+    sample: Annotated[Slots, "groups"]  # (g,): a constraint of each
+    group: Annotated[Slots, "constraints"]  # (t,) of a constraint, -1: in none
+    member: Annotated[SlotRows, "constraints, 3"]  # (t, 3): its corners among the k
     inner: Flags  # inner, fan, fan_start: see Jellies
     fan: SlotRows
     fan_start: Slots
-    turns: Slots  # (k,): scratch, as the two below
-    inverted: Flags  # (g,)
-    drawn: Flags  # (g,): inverted or wound
+    turns: Annotated[Slots, "members"]  # (k,): scratch, as the two below
+    inverted: Annotated[Flags, "groups"]  # (g,)
+    drawn: Annotated[Flags, "groups"]  # (g,): inverted or wound
 
 
 class System(NamedTuple):
@@ -163,13 +164,13 @@ class Span(NamedTuple):
 
 
 @inner_kernel
-def worth_of_sharing(first: int, last: int, bodies: Slots, work: Slots) -> int:
-    """What a parallel loop over bodies[first:last] could save: their work, but for the longest, which is shared itself.
+def worth_of_sharing(count: int, bodies: Slots, work: Slots) -> int:
+    """What a parallel loop over bodies[:count] could save: their work, but for the longest, which is shared itself.
 
     work (b,): of each body. bodies: empty: all.
     """
     total = longest = 0
-    for k in range(first, last):
+    for k in range(count):
         one = work[bodies[k] if bodies.shape[0] > 0 else k]
         total += one
         longest = max(longest, one)
@@ -199,6 +200,13 @@ def copy(span: Span, source: FloatRows, destination: FloatRows) -> None:
 
 
 @inner_kernel
+def clear(span: Span, vector: FloatRows) -> None:
+    """Set the rows of a body of an array (n, 2) to 0."""
+    for r in range(span.first_row, span.last_row):
+        vector[r, 0] = vector[r, 1] = 0.0
+
+
+@inner_kernel
 def scale(span: Span, factor: float, vector: FloatRows) -> None:
     """Multiply the rows of a body of an array (n, 2)."""
     for r in range(span.first_row, span.last_row):
@@ -214,6 +222,17 @@ def kinetic(span: Span, mass: Floats, velocity: FloatRows) -> float:
     for r in range(span.first_row, span.last_row):
         total += 0.5 * mass[r] * (velocity[r, 0] * velocity[r, 0] + velocity[r, 1] * velocity[r, 1])
     return total
+
+
+@inner_kernel
+def store(span: Span, system: System, state: State) -> None:
+    """Give the particles of a body the velocities `v`, and its springs their tensions."""
+    rows, springs = system.rows, system.springs
+    for r in range(span.first_row, span.last_row):
+        state.velocity[rows.particle[r], 0] = rows.v[r, 0]
+        state.velocity[rows.particle[r], 1] = rows.v[r, 1]
+    for k in range(span.first_spring, span.last_spring):
+        state.tension[springs.slot[k]] = springs.tension[k]
 
 
 @inner_kernel

@@ -50,18 +50,6 @@ class FrontPlaces(NamedTuple):
     root: Annotated[Slots, f"{MOST_SUBTREES}"]
 
 
-class FrontBlocks(NamedTuple):
-    """Places of the blocks of large bodies: see Fronts."""
-
-    of_row: Slots
-    width: Slots
-    base: Slots
-    first: Slots
-    last: Slots
-    border_start: Slots
-    border: Slots
-
-
 class Scratch(NamedTuple):
     """Scratch for work on a front; of all fronts, a lane of it for each of the tasks that are worked on at once."""
 
@@ -246,7 +234,7 @@ def _lay_out_remainders(first: int, last: int, found: Dissection, places: FrontP
 
 
 @inner_kernel
-def block_in_front(low: int, high: int, fronts: FrontBlocks) -> int:
+def block_in_front(low: int, high: int, fronts: Fronts) -> int:
     """Where the block between the rows low < high of a large body begins in the numbers of its fronts."""
     front = fronts.of_row[low]
     first = fronts.first[front]
@@ -291,8 +279,8 @@ def subtract_pair(
 
 
 @inner_kernel
-def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: FloatRows) -> None:
-    """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
+def solve_fronts(factored: bool, last_row: int, fronts: Fronts, change: FloatRows) -> None:
+    """Solve for the rows of a body, up to last_row, of change (n, 2) in place; factors its fronts, unless they are."""
     body = fronts.of_row[last_row - 1]
     first, last = fronts.stages[body, 0], fronts.stages[body, 1]
     for stage in range(first, last):
