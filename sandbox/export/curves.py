@@ -13,31 +13,22 @@ import numpy as np
 from sandbox.export.feel import Feel, sentence
 from sandbox.export.numbers import percent, short
 from sandbox.export.policy import policy
+from sandbox.physics.analysis.step_response import thin_curve
 from sandbox.physics.arrays import Floats
 
-# How far the points of a curve may be from it, as a share of the way, and what is left when a curve ends.
-CLOSE, ENDED = 0.005, 0.002
+CSS = "transition: transform {milliseconds}ms linear({stops});"
 TEMPLATE = Path(__file__).with_name("feel.html")
 MEASURED, NEAREST = "the curve as it was measured", "the single spring that comes nearest"
 
 
 def points_of(feel: Feel, form: str = MEASURED) -> Floats:
     """As few points (p, 2) of time [s] and progress as come near enough to a curve; from 0, 0 to 1 in the end."""
-    curve, tick = feel.curve if form == MEASURED else feel.spring_curve, feel.released.tick
-    beyond = np.flatnonzero(np.abs(1.0 - curve) > ENDED)
-    end = min(int(beyond[-1]) + 1, len(curve) - 1)
-    y = np.append(curve[:end], 1.0)
-    y[0] = 0.0
-    kept, at = [0], 0
-    while at < end:
-        at = max(to for to in range(at + 1, end + 1) if to == at + 1 or _is_straight(y, at, to))
-        kept.append(at)
-    return np.stack([tick * np.array(kept), y[kept]], axis=1)
-
-
-def _is_straight(y: Floats, first: int, last: int) -> bool:
-    between = np.linspace(y[first], y[last], last - first + 1)
-    return bool(np.max(np.abs(between - y[first : last + 1])) <= CLOSE)
+    curve = feel.curve if form == MEASURED else feel.spring_curve
+    kept = np.zeros(len(curve))
+    ticks = kept[: thin_curve(1.0 - curve, kept)]
+    values = curve[ticks.astype(int)]
+    values[0], values[-1] = 0.0, 1.0
+    return np.stack([feel.released.tick * ticks, values], axis=1)
 
 
 def _natural(feel: Feel) -> tuple[float, float]:
@@ -50,7 +41,7 @@ def _natural(feel: Feel) -> tuple[float, float]:
 def _css(points: Floats) -> str:
     last = points[-1, 0]
     stops = [f"{_n(value)} {_n(100.0 * time / last)}%" for time, value in points[1:-1].tolist()]
-    return f"transition: transform {round(1000.0 * last)}ms linear({', '.join(['0', *stops, '1'])});"
+    return CSS.format(milliseconds=round(1000.0 * last), stops=", ".join(["0", *stops, "1"]))
 
 
 def _unity(points: Floats) -> str:

@@ -1,32 +1,29 @@
-"""Release: how a thing comes back that is pulled aside and let go, measured in a copy of its world.
+"""Release: how a thing comes back that is pulled aside and let go, measured in copies of its world.
 
-One particle is held a little aside until all else rests, and let go; how far it is from its place, as a share of the
-first, is the curve. A second copy, in which nothing is pulled, says where its place is, as it is held and later: what
-moves by itself does not count.
+See step_response.py for how; here are the copies.
 """
 
 import copy
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.format.slices import as_part, at_once
+from sandbox.physics.analysis import step_response as kernels
+from sandbox.physics.arena import FIRST_ARENA, answer_of
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.components import label_linked
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 
-# Pulls that are tried, as shares of the thing's size: as a finger pokes, then so little that nothing slips or yields.
-PULLS = (0.01, 1e-4)
-# Longest wait for all to rest before the pull and while it lasts, and longest curve [s].
-MOST_BEFORE, MOST_HELD, MOST_SECONDS = 10.0, 10.0, 30.0
-# It rests once nothing of it moves further in a second than this share of the pull; so does the curve.
-AT_REST = 1e-3
-# What does not come back within this share of the pull has been moved for good.
-LEFT = 0.05
-# The share of the work that is the wait before the pull, and that of one pull.
-WAIT, PULL = 0.2, 0.4
+# Why there is no curve, in a line for a person: with what was seen.
+REASONS = {
+    kernels.NOTHING_FREE: "nothing of it is free to move",
+    kernels.NOTHING_HOLDS: "nothing holds it: pin it, or let it lie on something first",
+    kernels.NO_SIZE: "it has no size, or the way to pull it has no length",
+    kernels.MOVES_ON: "it still moves after {seconds} s, or something else does: let all come to rest first",
+    kernels.GOES_FURTHER: "it does not come back: let go, it goes further than it was pulled",
+    kernels.STAYS_AWAY: "it does not come back: {left} % of the way is left, at rest, after {seconds} s",
+}
 
 
 class NoCurve(ValueError):
@@ -47,117 +44,57 @@ class StepResponse:
     pull: float
 
 
-def particle_to_pull(world: World, particles: Slots) -> int:
-    """The slot among a thing's that is farthest from all that holds it: pins that it is joined to, and what it lies on.
-
-    Raises NoCurve where nothing holds it, or nothing of it is free.
-    """
-    free = particles[world.inverse_mass[particles] > 0.0]
-    if not len(free):
-        raise NoCurve("nothing of it is free to move")
-    label = np.arange(world.particle_count)
-    springs = np.flatnonzero(world.spring_active)
-    label_linked(world.particle_a[springs].astype(np.int64), world.particle_b[springs].astype(np.int64), label)
-    joined = np.flatnonzero(np.isin(label, label[particles]))
-    held = joined[world.inverse_mass[joined] == 0.0]
-    holders = np.concatenate([held, np.intersect1d(joined, world.contact_particle)])
-    if not len(holders):
-        raise NoCurve("nothing holds it: pin it, or let it lie on something first")
-    places, ends = world.position[free], world.position[holders]
-    nearest = np.min(np.sum((places[:, None] - ends[None]) ** 2, axis=2), axis=1)
-    return int(free[np.argmax(nearest)])
-
-
-def release(world: World, particle: int, towards: Sequence[float], size: float) -> StepResponse:
-    """Pull a particle of a thing of a size [m] aside, towards somewhere, let it go, and see how it comes back.
-
-    The world stays as it is. Raises NoCurve where it does not come back to its place.
-    """
-    return at_once(release_in_slices(world, particle, towards, size))
-
-
 def release_in_slices(
-    world: World, particle: int, towards: Sequence[float], size: float
+    world: World, springs: Slots, is_aside: bool = False, particle: int | None = None
 ) -> Generator[float, None, StepResponse]:
-    """As `release`, a tick at a time; says how much is done, 0..1."""
-    length = float(np.hypot(towards[0], towards[1]))
-    if not length > 0.0 or not size > 0.0:
-        raise NoCurve("it has no size, or the way to pull it has no length")
-    along = np.asarray(towards, float) / length
-    rested = copy.deepcopy(world)
+    """Pull a particle of the thing of some springs as gravity has it, or across that, let it go, and see how it comes
+    back: a tick at a time; says how much is done, 0..1.
 
-    def wait() -> bool:
-        step(rested)
-        return float(np.max(np.abs(rested.velocity), initial=0.0)) <= AT_REST * size
-
-    yield from as_part(_run(wait, round(MOST_BEFORE * world.settings.tick_rate)), 0.0, WAIT)
-    for number, share in enumerate(PULLS):
-        first = WAIT + PULL * number
-        errors = yield from as_part(_pulled(rested, particle, along, share * size), first, first + PULL)
-        left = float(np.mean(errors[-_window(world) :])) / errors[0]
-        # What is let go from rest never goes further than it was pulled, as long as it neither slips nor breaks.
-        is_further = float(np.max(np.abs(errors))) > (1.0 + LEFT) * errors[0]
-        if abs(left) <= LEFT and not is_further:
-            break
-        if number == len(PULLS) - 1:
-            took = len(errors) / world.settings.tick_rate
-            if took >= MOST_SECONDS:
-                raise NoCurve(f"it still moves after {took:.0f} s, or something else does: let all come to rest first")
-            if is_further:
-                raise NoCurve("it does not come back: let go, it goes further than it was pulled")
-            raise NoCurve(
-                f"it does not come back: {100.0 * left:.0f} % of the way is left, at rest, after {took:.0f} s"
-            )
-    end = left * errors[0]
-    shares = (errors - end) / (errors[0] - end)
-    way = float(along[0]), float(along[1])
-    return StepResponse(1.0 / world.settings.tick_rate, shares, particle, way, share * size)
+    particle: its slot; None: what is farthest from all that holds the thing. The world stays as it is. Raises NoCurve
+    where it does not come back to its place.
+    """
+    rate = world.settings.tick_rate
+    release = np.zeros(kernels.release_length(rate))
+    touching = world.contact_particle.astype(np.int64)
+    own, _ = answer_of(
+        kernels.choose_pull, FIRST_ARENA, world.lent, springs.astype(np.int64), touching, int(is_aside), release
+    )
+    if own < 0 and (particle is None or own == kernels.NO_SIZE):
+        raise NoCurve(REASONS[own])
+    if particle is not None:
+        release[kernels.PARTICLE] = particle
+    found = yield from _followed(world, release)
+    seconds = release[kernels.COUNT] / rate
+    if found != kernels.FOUND:
+        left = 100.0 * release[kernels.REST]
+        raise NoCurve(REASONS[found].format(seconds=f"{seconds:.0f}", left=f"{left:.0f}"))
+    errors = release[kernels.ERRORS : kernels.ERRORS + int(release[kernels.COUNT])].copy()
+    x, y = release[kernels.ALONG : kernels.ALONG + 2].tolist()
+    return StepResponse(1.0 / rate, errors, int(release[kernels.PARTICLE]), (x, y), float(release[kernels.PULLED]))
 
 
-def _window(world: World) -> int:
-    return max(2, world.settings.tick_rate // 2)
-
-
-def _run(advance: Callable[[], bool], ticks: int) -> Generator[float, None, None]:
-    """Ticks until all rests, three times in a row, or so many; advance: makes one, and says whether all rests."""
-    resting = 0
-    for tick in range(ticks):
-        resting = resting + 1 if advance() else 0
-        if resting >= 3:
-            break
-        yield tick / ticks
-
-
-def _pulled(rested: World, particle: int, along: Floats, pull: float) -> Generator[float, None, Floats]:
-    # How far a particle [m] is from where it would be without a pull, tick by tick from when it is let go.
-    still, pulled = copy.deepcopy(rested), copy.deepcopy(rested)
-    pulled.pin(particle)
-
-    def hold() -> None:
-        # Where it would be moves by itself, where a motor runs or what holds it swings.
-        pulled.change("position", still.position[particle] + pull * along, particle)
-        pulled.change("velocity", still.velocity[particle], particle)
-
-    def hold_on() -> bool:
-        step(still)
-        step(pulled)
-        hold()
-        apart, own = pulled.velocity - still.velocity, still.velocity[particle]
-        return float(max(np.max(np.abs(apart)), np.max(np.abs(own)))) <= AT_REST * pull
-
-    hold()
-    rate = rested.settings.tick_rate
-    yield from as_part(_run(hold_on, round(MOST_HELD * rate)), 0.0, 0.5)
-    pulled.unpin(particle)
-    hold()
-    errors = [float((pulled.position[particle] - still.position[particle]) @ along)]
-    window, ticks = _window(rested), round(MOST_SECONDS * rate)
-    for tick in range(ticks):
-        step(still)
-        step(pulled)
-        yield 0.5 + 0.5 * tick / ticks
-        errors.append(float((pulled.position[particle] - still.position[particle]) @ along))
-        recent = errors[-window:]
-        if len(errors) > window and max(recent) - min(recent) <= AT_REST * pull:
-            break
-    return np.array(errors)
+def _followed(world: World, release: Floats) -> Generator[float, None, int]:
+    # Do as the kernel says until it has found a curve, or says why there is none.
+    slot = int(release[kernels.PARTICLE])
+    rested = still = pulled = copy.deepcopy(world)
+    follows = kernels.STEP
+    while follows < kernels.FOUND:
+        if follows == kernels.BEGIN:
+            if release[kernels.NUMBER] == 0.0:
+                rested = still
+            still, pulled = copy.deepcopy(rested), copy.deepcopy(rested)
+            pulled.pin(slot)
+        elif follows != kernels.STEP:
+            if follows == kernels.LET_GO:
+                pulled.unpin(slot)
+            if follows != kernels.FREE:
+                held = release[kernels.HELD : kernels.HELD + 4]
+                pulled.change("position", held[:2], slot)
+                pulled.change("velocity", held[2:], slot)
+            step(pulled)
+        if follows != kernels.BEGIN:
+            step(still)
+            yield float(release[kernels.DONE])
+        flat = (each.reshape(-1) for each in (still.position, still.velocity, pulled.position, pulled.velocity))
+        follows = kernels.follow_release(release, *flat)
+    return follows

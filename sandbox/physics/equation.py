@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics.geometry.elementary import cosine, exponential
+from sandbox.physics.geometry.elementary import arc_cosine, cosine, exponential, logarithm_beside_one
 from sandbox.physics.geometry.segment import SHORTEST
 from sandbox.physics.jit import scalar_kernel
 
@@ -263,6 +263,7 @@ def is_reachable(frequency: float, damping_ratio: float, h: float) -> bool:
     return stiffness <= 1.0
 
 
+@scalar_kernel
 def highest_frequency(damping_ratio: float, h: float) -> float:
     """Highest frequency [Hz] that Cs <= 1 can give at this damping ratio and time step [s]; inf where there is none."""
     low, high = 0.0, 1.0 / h
@@ -276,25 +277,27 @@ def highest_frequency(damping_ratio: float, h: float) -> float:
     return low
 
 
+@scalar_kernel
 def frequency_from_coefficients(stiffness: float, damping: float, h: float) -> tuple[float, float]:
     """Frequency [Hz] and damping ratio of one spring with these Cs and Cd at time step h [s].
 
     Cd = 1 leaves a mode that dies within one step, which no finite frequency describes: both are inf.
     """
-    product = 1.0 - damping
-    if product <= 0.0:
+    if damping >= 1.0:
         return math.inf, math.inf
     # The roots r of r^2 - trace r + product = 0 are exp(h times the poles).  (2)
-    trace = 2.0 - stiffness - damping
-    fall = -0.5 * math.log(product) + 0.0
-    cosine = 0.5 * trace / math.sqrt(product)
-    if cosine >= 1.0:
-        turn_squared = -(math.acosh(cosine) ** 2)
-    elif cosine > -1.0:
-        turn_squared = math.acos(cosine) ** 2
+    fall = -0.5 * logarithm_beside_one(-damping) + 0.0
+    middle = 0.5 * (2.0 - stiffness - damping) / math.sqrt(1.0 - damping)
+    if middle >= 1.0:
+        beyond = middle - 1.0
+        turn = logarithm_beside_one(beyond + math.sqrt(beyond * (middle + 1.0)))
+        turn_squared = -(turn * turn)
+    elif middle > -1.0:
+        turn = arc_cosine(middle)
+        turn_squared = turn * turn
     else:
         return math.inf, math.inf
     natural = math.sqrt(max(0.0, turn_squared + fall * fall))
     if natural == 0.0:
         return 0.0, 0.0 if fall == 0.0 else math.inf
-    return natural / (2.0 * math.pi * h), fall / natural
+    return natural / (TURN * h), fall / natural

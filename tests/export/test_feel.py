@@ -9,10 +9,12 @@ import pytest
 
 from sandbox.cli import feel, main
 from sandbox.export.curves import NEAREST, TOOLS, card_page, card_picture, card_text, curve_for, points_of
-from sandbox.export.feel import card_of, feel_of, material_of, numbers_of, pair_for, sought
-from sandbox.export.release import NoCurve, particle_to_pull, release
+from sandbox.export.engines import NoSuchBody
+from sandbox.export.feel import card_of, feel_in_slices, feel_of, material_of, sought
+from sandbox.export.release import NoCurve
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import load_level
+from sandbox.physics.analysis.step_response import OVERSHOOT, RESPONSE, SETTLING, find_shape
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -31,6 +33,10 @@ def spring(stiffness: float, damping: float, **settings) -> World:
     return world
 
 
+def card_of_spring(stiffness: float, damping: float):
+    return feel_of(spring(stiffness, damping), way="aside")
+
+
 def closed_form(stiffness: float, damping: float):
     """Error at any time [s] of  x'' = (2 - Cs - Cd) x' - (1 - Cd) x,  x_0 = 1, x_1 = 1 - Cs."""
     first, second = np.roots([1.0, stiffness + damping - 2.0, 1.0 - damping]).astype(complex)
@@ -41,19 +47,19 @@ def closed_form(stiffness: float, damping: float):
     return lambda t: (weight * first ** (t / TICK) + (1.0 - weight) * second ** (t / TICK)).real
 
 
-def dense_numbers(errors):
+def dense_numbers(errors, settled=0.02):
     time = np.linspace(0.0, 60.0, 2_000_001)
     found = errors(time)
     turning = np.flatnonzero((found[1:-1] - found[:-2]) * (found[2:] - found[1:-1]) < 0.0) + 1
     # The start is no turning point: a spring is let go from rest.
     peaks = [value for value in found[turning] if abs(value) < 0.999]
     overshoot = max(0.0, -min(peaks, default=0.0))
-    return overshoot, time[np.flatnonzero(np.abs(found) > 0.02)[-1]], sum(abs(value) > 0.02 for value in peaks)
+    return overshoot, time[np.flatnonzero(np.abs(found) > settled)[-1]], sum(abs(value) > settled for value in peaks)
 
 
 @pytest.mark.parametrize(("stiffness", "damping"), GRID)
 def test_the_card_of_a_single_spring_is_its_closed_form(stiffness, damping):
-    card = card_of("spring", release(spring(stiffness, damping), 1, (1.0, 0.0), 1.0))
+    card = card_of_spring(stiffness, damping)
     overshoot, settling, swings = dense_numbers(closed_form(stiffness, damping))
     assert card.numbers.overshoot == pytest.approx(overshoot, rel=0.01, abs=0.002)
     assert card.numbers.settling == pytest.approx(settling, rel=0.01)
@@ -68,15 +74,28 @@ def test_the_card_of_a_single_spring_is_its_closed_form(stiffness, damping):
 @pytest.mark.parametrize("overshoot", [0.0, 0.03, 0.15, 0.5])
 @pytest.mark.parametrize("settling", [0.5, 0.8, 2.5])
 def test_backwards_a_single_spring_has_what_was_asked_for(overshoot, settling):
-    found, settled, _ = dense_numbers(closed_form(*pair_for(overshoot, settling, TICK)))
-    assert found == pytest.approx(overshoot, rel=0.02, abs=0.004)
-    assert settled == pytest.approx(settling, rel=0.02)
+    world = spring(0.01, 0.1)
+    found = sought(world, overshoot, settling, lambda tried: feel_in_slices(tried, way="aside"), None)
+    errors = closed_form(found.stiffness, found.damping)
+    # A peak of 2 % is in the band or out of it by a hair: curves are measured to a thousandth.
+    reached, soonest, _ = dense_numbers(errors, 0.021)
+    latest = dense_numbers(errors, 0.019)[1]
+    assert reached == pytest.approx(overshoot, rel=0.02, abs=0.004)
+    assert 0.98 * soonest < settling < 1.02 * latest
+    assert found.nearness == "as asked"
 
 
-@pytest.mark.parametrize(("overshoot", "settling"), [(1.0, 1.0), (-0.1, 1.0), (0.1, 0.0), (0.1, 0.02)])
-def test_what_no_spring_has_is_said(overshoot, settling):
-    with pytest.raises(ValueError, match="from 0 up to 100 %, and settling takes more than two ticks"):
-        pair_for(overshoot, settling, TICK)
+@pytest.mark.parametrize(
+    ("overshoot", "settling", "said"),
+    [
+        *((*asked, "from 0 up to 100 %, and settling takes more than two ticks") for asked in
+          [(1.0, 1.0), (-0.1, 1.0), (0.1, 0.0), (0.1, 0.02)]),
+        (0.9, 0.1, r"no spring that swings so far settles before 1\.[78]\d* s here"),
+    ],
+)  # fmt: skip
+def test_what_no_spring_has_is_said(overshoot, settling, said):
+    with pytest.raises(ValueError, match=said):
+        sought(spring(0.01, 0.1), overshoot, settling, lambda tried: feel_in_slices(tried, way="aside"), None)
 
 
 THINGS = [
@@ -108,16 +127,17 @@ def test_a_thing_comes_back_in_its_level_as_its_card_says(level, body, way):
             errors.append((pulled.position[slot] - still.position[slot]) @ along)
         step(still)
         step(pulled)
-    found = numbers_of(np.array(errors) / errors[0], TICK)
-    assert found.overshoot == pytest.approx(card.numbers.overshoot, abs=0.02)
-    assert found.settling == pytest.approx(card.numbers.settling, rel=0.02)
+    shape = np.array([TICK] + [0.0] * (RESPONSE - 1))
+    find_shape(np.array(errors) / errors[0], shape)
+    assert shape[OVERSHOOT] == pytest.approx(card.numbers.overshoot, abs=0.02)
+    assert shape[SETTLING] == pytest.approx(card.numbers.settling, rel=0.02)
 
 
 def test_what_swings_for_ever_beside_a_thing_does_not_count():
     alone, beside = spring(0.05, 0.1), spring(0.05, 0.1)
     first = beside.add_particles(["c", "d"], [(0.0, 9.0), (1.0, 9.0)], velocity=[(0.0, 0.0), (3.0, 0.0)])
     beside.add_springs(["c:d"], [first], [first + 1], stiffness=0.01, damping=0.0)
-    curves = [release(world, 1, (1.0, 0.0), 1.0).errors for world in (alone, beside)]
+    curves = [feel_of(world, "a", way="aside").curve for world in (alone, beside)]
     assert np.array_equal(curves[0], curves[1][: len(curves[0])])
 
 
@@ -138,7 +158,7 @@ def test_a_search_says_how_near_it_came_and_takes_the_springs_of_the_thing_alone
     def measure(copied):
         assert np.array_equal(copied.stiffness[others], world.stiffness[others])
         yield 0.5
-        return card_of("bridge", release(spring(0.02, 0.1), 1, (1.0, 0.0), 1.0))
+        return card_of_spring(0.02, 0.1)
 
     found = sought(world, 0.1, 0.4, measure, material_of(world, "bridge"))
     assert found.nearness.startswith("the closest that was found: ") and found.nearness.endswith("10 % and 0.4 s asked")
@@ -147,16 +167,16 @@ def test_a_search_says_how_near_it_came_and_takes_the_springs_of_the_thing_alone
 
 def test_what_nothing_holds_and_what_does_not_come_back_say_so():
     world = spring(0.1, 0.1)
-    with pytest.raises(NoCurve, match="nothing of it is free"):
-        particle_to_pull(world, np.array([0]))
-    loose = spring(0.1, 0.1)
+    fixed, loose, point = (copy.deepcopy(world) for _ in range(3))
+    fixed.pin(1)
     loose.unpin(0)
-    with pytest.raises(NoCurve, match="nothing holds it"):
-        particle_to_pull(loose, np.array([0, 1]))
-    with pytest.raises(NoCurve, match="the way to pull it has no length"):
-        release(world, 1, (0.0, 0.0), 1.0)
-    with pytest.raises(NoCurve, match="does not come back"):
-        release(world, 1, (0.0, 1.0), 1.0)
+    point.change("position", (0.0, 0.0), 1)
+    for other, said in ((loose, "nothing holds it"), (point, "it has no size"), (world, "does not come back")):
+        with pytest.raises(NoCurve, match=said):
+            # Across it, the first order of a spring does nothing.
+            feel_of(other, way="down")
+    with pytest.raises(NoSuchBody):
+        feel_of(fixed)
 
 
 # Curves, read by the rules of those who take them
@@ -164,7 +184,7 @@ def test_what_nothing_holds_and_what_does_not_come_back_say_so():
 
 @pytest.fixture(scope="module")
 def card():
-    return card_of("spring", release(spring(0.02, 0.1), 1, (1.0, 0.0), 1.0))
+    return card_of_spring(0.02, 0.1)
 
 
 def read_css(text):
@@ -213,7 +233,7 @@ def read_spring(tool, text):
 @pytest.mark.parametrize("tool", [tool for tool, forms in TOOLS.items() if forms == (NEAREST,)])
 @pytest.mark.parametrize("pair", [(0.02, 0.1), (0.002, 0.02), (0.01, 0.3)])
 def test_springs_of_other_tools_follow_the_curve(tool, pair):
-    card = card_of("spring", release(spring(*pair), 1, (1.0, 0.0), 1.0))
+    card = card_of_spring(*pair)
     omega, ratio = read_spring(tool, text_of(card, tool))
     # x'' + 2 z w x' + w^2 x = 0 from rest. A tick's spring is half a tick ahead of it: its velocity comes first.
     roots = np.roots([1.0, 2.0 * ratio * omega, omega * omega]).astype(complex)
@@ -295,5 +315,5 @@ def test_what_cannot_be_measured_is_one_line(words, said, capsys):
 
 def test_the_words_of_a_card():
     assert "It glides home: no overshoot" in card_text(
-        card_of("spring", release(spring(0.02, 0.5), 1, (1.0, 0.0), 1.0))
+        card_of_spring(0.02, 0.5)
     )  # fmt: skip

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.geometry.elementary import cosine, exponential, rounded, to_three_digits
+from sandbox.physics.geometry.elementary import (
+    arc_cosine,
+    cosine,
+    exponential,
+    logarithm,
+    logarithm_beside_one,
+    rounded,
+    to_three_digits,
+)
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.keeping.equipment import Firmness, StiffForm
 from sandbox.physics.settings import AUTO
@@ -179,6 +187,19 @@ def test_the_exponential_and_the_cosine_are_the_nearest_numbers_and_what_is_roun
         for is_up, way in ((True, ROUND_CEILING), (False, ROUND_FLOOR)):
             assert to_three_digits(value, is_up) == float(Context(prec=3, rounding=way).create_decimal(value))
     assert (exponential(0.0), exponential(-1e9), exponential(-math.inf), cosine(0.0)) == (1.0, 0.0, 0.0, 1.0)
+
+
+def test_logarithms_and_arc_cosines_are_those_of_a_good_library_but_for_last_bits():
+    generator = random.Random(2)
+    for _ in range(3000):
+        value, small = 10.0 ** generator.uniform(-300, 300), 10.0 ** generator.uniform(-15, 0.5)
+        angle = generator.uniform(0.0, math.pi)
+        assert logarithm(value) == pytest.approx(math.log(value), rel=1e-15)
+        assert logarithm_beside_one(small) == pytest.approx(math.log1p(small), rel=1e-15)
+        assert logarithm_beside_one(-0.3 * small) == pytest.approx(math.log1p(-0.3 * small), rel=1e-15)
+        assert arc_cosine(math.cos(angle)) == pytest.approx(math.acos(math.cos(angle)), rel=1e-15)
+    assert (logarithm(1.0), logarithm_beside_one(0.0)) == (0.0, 0.0)
+    assert (arc_cosine(1.0), arc_cosine(-1.0)) == (0.0, math.pi)
 
 
 def test_numbers_that_are_no_body_are_refused_and_nothing_is_changed():

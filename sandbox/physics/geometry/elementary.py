@@ -1,8 +1,8 @@
-"""Exponential, cosine, decimals and sums in + - * / alone: the same bits everywhere, where libraries differ.
+"""Exponential, cosine, their inverses, decimals and sums in + - * / and roots alone: the same bits everywhere.
 
-Within, a number is a pair: the nearest one, and what that lacks, some 32 digits together. So results are the nearest
-numbers there are, but for one in many millions, and those of a good library.
-Sums are made in an order of ours.
+Within exponential and cosine a number is a pair: the nearest one, and what that lacks, some 32 digits together. So
+results are the nearest numbers there are, but for one in many millions, and those of a good library. Logarithms and arc
+cosines are right but for their last bits. Sums are made in an order of ours.
 Sources: Dekker 1971, of pairs; Taylor, after halving the argument.
 """
 
@@ -23,6 +23,8 @@ _LOWEST_POWER = -750.0
 # Doublings of the argument after the series, and terms of it.
 _EXPONENT_DOUBLINGS, _EXPONENT_TERMS = 3, 14
 _COSINE_DOUBLINGS, _COSINE_TERMS = 4, 10
+# Terms of the series of inverses, whose argument is below a fifth; what numbers are halved or doubled to be below of.
+_INVERSE_TERMS, _ROOT_OF_TWO = 13, 1.4142135623730951
 
 
 @scalar_kernel
@@ -113,6 +115,50 @@ def cosine(x: float) -> float:
         lack, rest = _times(2.0 * lack, 2.0 * rest, other, other_rest)
     lack, rest = _less(1.0, lack, rest)
     return lack
+
+
+@scalar_kernel
+def logarithm(x: float) -> float:
+    """The natural logarithm of a positive, finite number."""
+    doublings = 0
+    while x > _ROOT_OF_TWO:
+        x *= 0.5
+        doublings += 1
+    while x * _ROOT_OF_TWO < 1.0:
+        x *= 2.0
+        doublings -= 1
+    part = (x - 1.0) / (x + 1.0)
+    return doublings * _LN2 + (doublings * _LN2_REST + 2.0 * part * _odd_series(part * part))
+
+
+@scalar_kernel
+def logarithm_beside_one(x: float) -> float:
+    """The natural logarithm of 1 + x, which keeps the digits of a small x, above -1."""
+    if abs(x) > 0.4:
+        return logarithm(1.0 + x)
+    part = x / (2.0 + x)
+    return 2.0 * part * _odd_series(part * part)
+
+
+@scalar_kernel
+def arc_cosine(x: float) -> float:
+    """The angle, 0 to half a turn, of this cosine, -1 to 1."""
+    # x = (1 - t^2) / (1 + t^2) of the tangent t of half the angle; of a steep one the rest of a quarter turn.
+    is_steep = x < 0.0
+    tangent = math.sqrt((1.0 - abs(x)) / (1.0 + abs(x)))
+    for _ in range(2):
+        tangent /= 1.0 + math.sqrt(1.0 + tangent * tangent)
+    angle = 8.0 * tangent * _odd_series(-(tangent * tangent))
+    return 0.5 * _TURN - angle if is_steep else angle
+
+
+@scalar_kernel
+def _odd_series(square: float) -> float:
+    # 1 + x^2 / 3 + x^4 / 5 + ...
+    total = 0.0
+    for back in range(_INVERSE_TERMS):
+        total = total * square + 1.0 / (2.0 * (_INVERSE_TERMS - 1 - back) + 1.0)
+    return total
 
 
 @scalar_kernel

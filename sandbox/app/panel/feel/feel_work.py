@@ -14,7 +14,7 @@ from sandbox.session.commands import SetCoefficients
 # Wall time [s] of a frame for the work, for which the person waits.
 BUDGET = 0.03
 WAYS = ("down", "aside")
-MEASURING = "Measuring it: pulled aside in a copy of the run, held, and let go."
+MEASURING = "Measuring it: pulled in a copy of the run, held, and let go."
 LOOKING = "Looking for Cs and Cd."
 HINT = "Drag the peak or the end of the curve, or type: then Cs and Cd are looked for."
 NO_HANDS = "Hands may not change springs in this level."

@@ -77,5 +77,10 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.kits.kit_kernels.join",
     "sandbox.physics.kits.kit_kernels.reserve",
     "sandbox.physics.kits.removing.remove",
+    "sandbox.physics.analysis.step_response.choose_pull",
+    "sandbox.physics.analysis.step_response.follow_release",
+    "sandbox.physics.analysis.step_response.measure_response",
+    "sandbox.physics.analysis.step_response.thin_curve",
+    "sandbox.physics.analysis.feel_search.seek",
 )
 WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)
