@@ -11,14 +11,16 @@ from sandbox.app.base import gamepads, loop, sag_map
 from sandbox.app.draw import colours, effects, looks, water
 from sandbox.app.draw.things import belt_marks, drawables, faces, level_slots, members, soft, wheels
 from sandbox.app.panel import engineers_rows, readings
+from sandbox.app.panel.feel import feel_work
 from sandbox.app.play import hand_labels, stage
 from sandbox.app.run import playback
 from sandbox.app.sound import sound_events, voices, waves
+from sandbox.export import curves, feel, release
 from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
-from sandbox.physics.analysis import applied_forces, query
-from sandbox.physics.marks import SOLID_LEFT
+from sandbox.physics.analysis import applied_forces, feel_search, query, step_response
+from sandbox.physics.marks import LAW_HOOKE, SOLID_LEFT
 from sandbox.physics.meshing import fitting
 from sandbox.physics.softness import body_motion
 from sandbox.session import summary, tuning
@@ -87,6 +89,27 @@ def shared_values() -> dict[str, dict[str, Any]]:
             "SQUEEZED": _hex(colours.SQUEEZED_FLUSH), "STRETCHED": _hex(colours.STRETCHED_FLUSH),
             "SANDS": list(map(_hex, colours.SANDS)),
         },
+    } | _of_feel()  # fmt: skip
+
+
+def _of_feel() -> dict[str, dict[str, Any]]:
+    """What the card of how a thing feels goes by."""
+    return {
+        "RELEASE": _of(
+            step_response, "NUMBER", "RATE", "DONE", "HELD", "REST", "COUNT", "ERRORS", "MOST_SECONDS", "STEP", "BEGIN",
+            "LET_GO", "FREE", "FOUND",
+        ),
+        "RESPONSE": _of(
+            step_response, "TICK", "OVERSHOOT", "SETTLING", "SWINGS", "STIFFNESS", "DAMPING", "FREQUENCY", "RATIO",
+            "DIFFERENCE", "RESPONSE", "SETTLED",
+        ),
+        "SEARCH": _of(
+            feel_search, "TRIED", "HAS", "GOT", "MISSED", "BEST_ROUND", "ROUND", "SOONEST", "SEARCH", "SOUGHT", "TRY",
+            "OVER",
+        ),
+        "FEEL": {"HOOKE": LAW_HOOKE, "REASONS": release.REASONS, "CSS": curves.CSS}
+        | _of(feel, "ALL_HOOKE", "FEELS", "REFUSALS", "AS_ASKED", "CLOSEST", "PAIR", "PAIR_OF_ALL")
+        | _of(feel_work, "HINT", "NO_HANDS", "MEASURING", "LOOKING", "WAYS"),
     }  # fmt: skip
 
 

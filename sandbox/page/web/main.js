@@ -4,6 +4,7 @@ import { Refusal } from './commands.js';
 import { typed } from './cursor.js';
 import { Ears } from './ears.js';
 import { Engineers } from './engineers.js';
+import { FeelCard } from './feel_card.js';
 import { Lost, read } from './files.js';
 import { Goals, starText } from './goals.js';
 import { Keys } from './keys.js';
@@ -77,7 +78,8 @@ class Page {
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), was: byId('end-was'), on: byId('end-on'), solved: byId('solved') });
     this.best = new Best(this.toy);
-    this.menu = new Menu(byId('menu'), this.toy);
+    this.feel = new FeelCard(byId('feel'), this.toy);
+    this.menu = new Menu(byId('menu'), this.toy, (particle) => this.#feelOf(particle));
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
     this.ears = new Ears(byId('spoken'));
@@ -273,6 +275,14 @@ class Page {
     const { tool } = this.toy.hands;
     if (id === 'makers' && part.hidden && (tool in MAKES || this.toy.hands.maker.makes(tool))) this.#choose('drag');
     if (id !== 'hints' && !part.hidden && !roomy.matches && !byId('hints').hidden) this.#show('hints', 'hint');
+  }
+
+  /** Show how the thing of a particle feels; there is room for one card.
+   * @type {(particle: number) => void} */
+  #feelOf(particle) {
+    if (!byId('panel').hidden) this.#show('panel', 'tune');
+    if (!roomy.matches && !byId('hints').hidden) this.#show('hints', 'hint');
+    this.feel.open(particle);
   }
 
   /** @type {(tool: string) => void} */

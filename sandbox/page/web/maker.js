@@ -22,7 +22,7 @@ const placed = ([x, y]) => [Math.round(x * 1000) / 1000, Math.round(y * 1000) / 
  * places [m]. Throws a Refusal.
  * @type {(world: World, numbers: number[]) => Mesh} */
 export function filled(world, numbers) {
-  const [code, words, floats] = world.answer('fill_stroke', numbers);
+  const [code, words, floats] = world.calls.answer('fill_stroke', numbers);
   if (code) throw new Refusal(REFUSALS[code]);
   /** @type {(at: number, width: number, array: AnyArray) => any[]} */
   const rows = (at, width, array) => Array.from({ length: Number(words[at + 1]) }, (_, k) =>

@@ -10,13 +10,14 @@ import { element } from './panel.js';
 const WEIGHTS = [['half as heavy', 0.5], ['twice as heavy', 2]];
 
 export class Menu {
-  /** What it says of things: by words of firmness Cs and Cd of materials, the level's own bodies, and those that joined it
+  /** feel: shows how the thing of a particle feels. What it says of things: by words of firmness Cs and Cd of materials, the level's own bodies, and those that joined it
    * or were cut; and whether they touch.
-   * @param {HTMLElement} box @param {Toy} toy */
-  constructor(box, toy) {
+   * @param {HTMLElement} box @param {Toy} toy @param {(particle: number) => void} feel */
+  constructor(box, toy, feel) {
     const { touches, made: { words, sags, firmness } } = toy.level.about.adding;
     this.box = box;
     this.toy = toy;
+    this.feel = feel;
     this.words = words;
     this.sags = sags;
     this.firmness = firmness;
@@ -79,7 +80,7 @@ export class Menu {
     // What touches nothing is stuck in nothing.
     const free = this.touches ? [button('free it', () => this.#change(particle, 'free', { type: 'free', particle }))] : [];
     box.replaceChildren(...softness, ...weights, ...free, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
-      { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)));
+      { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)), ...(spring < 0 ? [] : [button('how it feels', () => this.feel(particle))]));
     box.setAttribute('aria-label', thingOf(world.names.particle[particle]));
     box.hidden = false;
     box.style.left = `${Math.max(8, Math.min(x, innerWidth - box.offsetWidth - 8))}px`;

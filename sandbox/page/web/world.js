@@ -1,5 +1,6 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
-import { aligned, KINDS, put } from './arrays.js';
+import { KINDS, put } from './arrays.js';
+import { Calling, MORE, WORD } from './calling.js';
 import { Commands, Refusal } from './commands.js';
 import { formCounts, formNames, formRows } from './forms.js';
 import { Hashes, isEqual } from './hash.js';
@@ -8,32 +9,22 @@ import { act } from './rules.js';
 /**
  * @import { About, AnyArray, Column, Command, Counts, Done, Joined, Kernels, Kit, Level, NameKind, SavedState,
  *   Settings, StateHash, View } from './types.js'
+ * @import { Span } from './calling.js'
  */
 
-const PAGE = 65536, WORD = 8, ADDRESS = 4, SHAPE = 5;
-// What is derived, in this order, each by a kernel of its own with an arena of its own; and words that one begins with.
-const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
+const ADDRESS = 4, SHAPE = 5;
+// What is derived, in this order, each by a kernel of its own with an arena of its own.
+const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'];
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.kept.feature',
   'collisions.kept.impulse', 'collisions.kept.impact']);
-// Room for the words of arguments of a call.
-const ARGUMENTS = 64, NONE = new Float64Array();
-
-/** @typedef {[address: number, count: number, size: number]} Span */
+const NONE = new Float64Array();
 
 export class World {
-  /** @type {Kernels} */
-  #kernels;
   /** @type {About} */
   #about;
   /** @type {number} */
-  #arguments;
-  /** @type {number} */
   #base;
-  /** @type {number} */
-  #end;
-  /** @type {Record<string, Span>} */
-  #arenas = {};
   /** The words of what the block was given: what kernels derived lies in place of the others.
    * @type {Uint8Array} */
   #given;
@@ -59,9 +50,6 @@ export class World {
   /** Second names of particles, with their slots.
    * @type {Record<string, number>} */
   #second;
-  /** Where arrays that a kernel is lent lie, and how many words there are.
-   * @type {[address: number, most: number]} */
-  #slots = [0, 0];
   /** First particle and spring of hands, below 0 until there are any, and how many hands there are.
    * @type {About['hands']} */
   hands;
@@ -82,7 +70,6 @@ export class World {
   /** kernels: what the module exports; image: the block as bytes; about: what Python says of both, see start.py.
    * @param {Kernels} kernels @param {Uint8Array} image @param {About} about */
   constructor(kernels, image, about) {
-    this.#kernels = kernels;
     this.#about = about;
     this.#hashes = new Hashes(about.columns);
     this.counts = about.counts;
@@ -90,26 +77,24 @@ export class World {
     this.names = structuredClone(about.names);
     this.#second = { ...about.second.particle };
     this.commands = new Commands(about, this.names, { ...about.second, particle: this.#second });
-    this.#arguments = aligned(kernels.__heap_base.value);
-    this.#base = aligned(this.#arguments + ARGUMENTS * WORD);
-    this.#end = this.#base;
-    this.#reserve(image.length);
-    const memory = new Uint8Array(kernels.memory.buffer);
+    this.calls = new Calling(kernels, about.kernels);
+    this.#base = this.calls.reserve(image.length);
+    const memory = new Uint8Array(this.calls.buffer);
     memory.set(image, this.#base);
     for (const [to, from, size] of about.copies) memory.copyWithin(this.#base + to, this.#base + from,
       this.#base + from + size);
-    const words = new Uint32Array(kernels.memory.buffer);
+    const words = new Uint32Array(this.calls.buffer);
     let word = 0;
     for (const [path, [kind, dimensions]] of Object.entries(about.table)) {
       this.#table.set(path, { word, kind, dimensions });
       words[this.#place(word) + 2 * ADDRESS] += this.#base;
       word += SHAPE + 2 * dimensions;
     }
-    this.#given = new Uint8Array(kernels.memory.buffer, this.#base, about.words * WORD).slice();
+    this.#given = new Uint8Array(this.calls.buffer, this.#base, about.words * WORD).slice();
     for (const path of Object.keys(about.grows)) this.#room.set(path, this.#dimension(path));
     const { table, ranges } = about.kit;
-    this.#tables = this.#lent(BigInt64Array.from(table, BigInt), Float64Array.from(ranges, Number));
-    this.#slots = [0, 0];
+    this.#tables = this.calls.lend(BigInt64Array.from(table, BigInt), Float64Array.from(ranges, Number));
+    this.calls.keep();
     this.#derive(DERIVATIONS);
     this.#forms = [...about.names.form];
     Object.defineProperty(this.names, 'form', { enumerable: false, get: () => this.#formNames(this.#forms) });
@@ -119,9 +104,9 @@ export class World {
    * @type {(bodies: string[]) => string[]} */
   #formNames(bodies) {
     if (!bodies.length) return [];
-    const [listed] = this.#lent(new BigInt64Array(bodies.length));
+    const [listed] = this.calls.lend(new BigInt64Array(bodies.length));
     this.#inArena('count_pieces', [], this.#block, listed);
-    const counts = Array.from(new BigInt64Array(this.#kernels.memory.buffer, listed[0], bodies.length), Number);
+    const counts = Array.from(new BigInt64Array(this.calls.buffer, listed[0], bodies.length), Number);
     const pieces = bodies.map((name, k) => (counts[k] < 2 ? [name]
       : Array.from({ length: counts[k] }, (_, at) => `${name}, ${at + 1} of ${counts[k]}`)));
     return [...pieces.map(([first]) => first), ...pieces.flatMap(([, ...others]) => others)];
@@ -131,16 +116,6 @@ export class World {
    * @type {(spring: number) => number} */
   formOf(spring) {
     return this.#inArena('form_of_spring', [], this.#block, spring);
-  }
-
-  /** Where there are so many more bytes of memory.
-   * @type {(size: number) => number} */
-  #reserve(size) {
-    const address = this.#end, { memory } = this.#kernels;
-    this.#end = aligned(address + size);
-    const pages = Math.ceil(this.#end / PAGE) - memory.buffer.byteLength / PAGE;
-    if (pages > 0) memory.grow(pages);
-    return address;
   }
 
   /** Where a word of the block is, as an index of numbers of 32 bits.
@@ -153,14 +128,14 @@ export class World {
    * @template {string} P @param {P} path @returns {View<P>} */
   view(path) {
     const found = this.#views.get(path);
-    if (found && found.buffer === this.#kernels.memory.buffer) return /** @type {View<P>} */ (found);
+    if (found && found.buffer === this.calls.buffer) return /** @type {View<P>} */ (found);
     const place = this.#table.get(path);
     if (!place) throw new Error(`there is no array ${path}`);
-    const { word, kind, dimensions } = place, words = new Uint32Array(this.#kernels.memory.buffer),
+    const { word, kind, dimensions } = place, words = new Uint32Array(this.calls.buffer),
       at = this.#place(word);
     let size = 1;
     for (let k = 0; k < dimensions; k++) size *= words[at + 2 * (SHAPE + k)];
-    const view = new KINDS[kind](this.#kernels.memory.buffer, words[at + 2 * ADDRESS], size);
+    const view = new KINDS[kind](this.calls.buffer, words[at + 2 * ADDRESS], size);
     this.#views.set(path, view);
     return /** @type {View<P>} */ (view);
   }
@@ -169,14 +144,14 @@ export class World {
    * @type {(path: string) => number} */
   #dimension(path) {
     const { word } = this.#table.get(path) ?? { word: 0 };
-    return new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * SHAPE];
+    return new Uint32Array(this.calls.buffer)[this.#place(word) + 2 * SHAPE];
   }
 
   /** Numbers in a row of an array.
    * @type {(path: string) => number} */
   #width(path) {
     const { word, dimensions } = this.#table.get(path) ?? { word: 0, dimensions: 1 };
-    return dimensions > 1 ? new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * (SHAPE + 1)] : 1;
+    return dimensions > 1 ? new Uint32Array(this.calls.buffer)[this.#place(word) + 2 * (SHAPE + 1)] : 1;
   }
 
   /** Let an array lie elsewhere, with so many rows.
@@ -184,7 +159,7 @@ export class World {
   #lay(path, address, rows) {
     const { word } = this.#table.get(path) ?? { word: 0 };
     const words = [[2, rows * this.#width(path)], [ADDRESS, address], [SHAPE, rows]];
-    for (const buffer of [this.#kernels.memory.buffer, this.#given.buffer]) {
+    for (const buffer of [this.calls.buffer, this.#given.buffer]) {
       const from = buffer === this.#given.buffer ? 0 : this.#base, all = new Uint32Array(buffer);
       for (const [at, value] of words) all[(from + WORD * (word + at)) / 4] = value;
     }
@@ -199,40 +174,13 @@ export class World {
       if (rows === had) continue;
       const width = this.#width(path), kept = before.slice(), isMoved = rows > (this.#room.get(path) ?? 0);
       if (isMoved) this.#room.set(path, MORE * rows);
-      const address = isMoved ? this.#reserve(MORE * rows * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
+      const address = isMoved ? this.calls.reserve(MORE * rows * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
       this.#lay(path, address, rows);
       const view = this.view(path);
       put(view, kept.subarray(0, Math.min(kept.length, view.length)));
       if (view instanceof BigInt64Array) view.fill(BigInt(fill), had * width);
       else view.fill(Number(fill), had * width);
     }
-  }
-
-  /** Two arrays of words where a kernel takes them, until others are.
-   * @type {(...arrays: (BigInt64Array | Float64Array)[]) => Span[]} */
-  #lent(...arrays) {
-    const words = arrays.reduce((sum, { length }) => sum + length, 0), { memory } = this.#kernels;
-    if (words > this.#slots[1]) this.#slots = [this.#reserve(MORE * words * WORD), MORE * words];
-    let [address] = this.#slots;
-    return arrays.map((array) => {
-      new Uint8Array(memory.buffer).set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), address);
-      address += array.byteLength;
-      return /** @type {Span} */ ([address - array.byteLength, array.length, WORD]);
-    });
-  }
-
-  /** Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
-   * @type {(name: string, ...given: (number | Span)[]) => number} */
-  #call(name, ...given) {
-    const words = given.flatMap((each) => {
-      if (!Array.isArray(each)) return [each];
-      const [address, count, size] = each;
-      return [0, 0, count, size, address, count, size];
-    });
-    const place = new BigInt64Array(this.#kernels.memory.buffer, this.#arguments, words.length);
-    place.set(words.map(BigInt));
-    if (this.#kernels[this.#about.kernels[name]](this.#arguments) !== 0) throw new Error(`the kernel ${name} failed`);
-    return Number(new BigInt64Array(this.#kernels.memory.buffer, this.#arguments, 1)[0]);
   }
 
   /** @type {Span} */
@@ -247,29 +195,34 @@ export class World {
 
   tick() {
     act(this, this.#about);
+    this.step();
+    if (this.#about.rules.length) this.calls.call('judge', this.#block);
+  }
+
+  // Physics alone: a tick in which no rule does anything.
+  step() {
     const progress = this.view('progress'), { TICK, MAY_FLY, COUNT, CHECKED } = this.#about.progress;
     const { NO_ROOM, UNSOUND, LOST, BROKE } = this.#about.codes;
     progress[TICK] = BigInt(this.time);
     progress[MAY_FLY] = 1n;
     progress[COUNT] = progress[CHECKED] = 0n;
-    let code = this.#call('tick', this.#block);
+    let code = this.calls.call('tick', this.#block);
     while (code === NO_ROOM || code === UNSOUND) {
       if (code === NO_ROOM) this.#derive(ROOM);
       else {
         this.#takeBack(code);
         this.view('progress')[CHECKED] = 1n;
       }
-      code = this.#call('tick', this.#block);
+      code = this.calls.call('tick', this.#block);
     }
     this.time += 1;
     if (code === LOST) {
       this.#takeBack(code);
-      code = this.#call('find_broken', this.#block) ? BROKE : code;
+      code = this.calls.call('find_broken', this.#block) ? BROKE : code;
     }
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
       : [];
     if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken }, this.#about.givers.PROGRAM);
-    if (this.#about.rules.length) this.#call('judge', this.#block);
   }
 
   /** Take back what a tick has said of that no physics gives it, see sanitise.py.
@@ -302,9 +255,9 @@ export class World {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate, materials: this.counts.material });
     const { code, slots, numbers, changes } = packed;
-    const given = this.#lent(BigInt64Array.from(slots, BigInt), Float64Array.from(numbers));
+    const given = this.calls.lend(BigInt64Array.from(slots, BigInt), Float64Array.from(numbers));
     const call = () => this.#inArena('command', [this.#block], giver, code, ...given);
-    const answered = () => new Float64Array(this.#kernels.memory.buffer, given[1][0], numbers.length);
+    const answered = () => new Float64Array(this.calls.buffer, given[1][0], numbers.length);
     let result = call();
     if (this.commands.wantsRows(result)) {
       const [particle, spring, constraint, corner] = this.commands.rowsIn(answered());
@@ -352,7 +305,7 @@ export class World {
     const { count } = this.hands, { particle, spring } = this.counts, names = Array.from({ length: count },
       (_, hand) => `+hand.${hand}`);
     this.#addRows({ particle: count, spring: count, hand: count }, { particle: names, spring: names });
-    this.#call('reserve', this.#block, particle, spring);
+    this.calls.call('reserve', this.#block, particle, spring);
     this.#hold({ particle, spring, count });
     this.#derive(DERIVATIONS);
   }
@@ -364,7 +317,7 @@ export class World {
     checkForms(kit, counts, table.words);
     const names = namesOf(kit, made, this, table), before = this.counts, scene = seen(kit, before, counts);
     const keys = keysOf(kit, before.actuator, counts.parts);
-    const rows = this.#lent(made.slots, made.numbers), code = this.#about.codeOf[type];
+    const rows = this.calls.lend(made.slots, made.numbers), code = this.#about.codeOf[type];
     const call = () => this.#inArena('join', [this.#block], giver, code, ...this.#tables, ...rows);
     /** @type {Counts} */
     const then = { ...before, ...formCounts(kit, before), material: made.materials.length, area: before.area + names.area.length };
@@ -406,7 +359,7 @@ export class World {
       (name.startsWith(`${body}${mark}`) && this.isInUse(kind, slot) ? [slot] : []));
     const particles = isBody ? named('particle', '.') : [particle], springs = isBody ? named('spring', ':') : [];
     if (!particles.length && !springs.length) throw new Refusal(this.#about.kit.words.notThere);
-    const rows = this.#lent(BigInt64Array.from(particles, BigInt), BigInt64Array.from(springs, BigInt));
+    const rows = this.calls.lend(BigInt64Array.from(particles, BigInt), BigInt64Array.from(springs, BigInt));
     const answer = this.#inArena('remove', [this.#block], giver, isBody ? ways.BODY : ways.HANGING, ...rows);
     this.commands.check(type, answer, (k) => (k < particles.length ? this.names.particle[particles[k]]
       : this.names.spring[springs[k - particles.length]]));
@@ -417,42 +370,29 @@ export class World {
   /** Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
    * @type {(names: string[], contacts?: AnyArray[]) => void} */
   #derive(names, contacts = this.#contactRows()) {
-    if (names === DERIVATIONS) new Uint8Array(this.#kernels.memory.buffer).set(this.#given, this.#base);
+    if (names === DERIVATIONS) new Uint8Array(this.calls.buffer).set(this.#given, this.#base);
     this.#views.clear();
     this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
     for (const name of names) this.#inArena(name, [this.#block]);
     if (names !== HANDS) CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
   }
 
-  /** What a kernel answers that takes numbers and no world, and its arena, as words and as floats.
-   * @type {(name: string, numbers: number[]) => [answer: number, words: BigInt64Array, floats: Float64Array]} */
-  answer(name, numbers) {
-    const { memory } = this.#kernels, answer = this.#inArena(name, [], ...this.#lent(Float64Array.from(numbers)));
-    const [address, size] = this.#arenas[name];
-    return [answer, new BigInt64Array(memory.buffer, address, size), new Float64Array(memory.buffer, address, size)];
+  /** The particle to pull of the thing of some springs, and a release of it, see step_response.py; below 0: why none.
+   * @type {(springs: number[], isAside: boolean, release: Float64Array) => number} */
+  choosePull(springs, isAside, release) {
+    const [own, touching, numbers] = this.calls.lend(BigInt64Array.from(springs, BigInt),
+      BigInt64Array.from(this.contacts(), BigInt), release);
+    const slot = this.#inArena('choose_pull', [], this.#block, own, touching, Number(isAside), numbers);
+    release.set(new Float64Array(this.calls.buffer, numbers[0], release.length));
+    return slot;
   }
 
-  /** Call a kernel with what comes first, with its own arena, which grows until there is room, and what comes after that.
+  /** Call a kernel with what comes first, with its own arena, and what comes after that; arrays may lie elsewhere then.
    * @type {(name: string, before: Span[], ...given: (number | Span)[]) => number} */
   #inArena(name, before, ...given) {
-    let arena = (this.#arenas[name] ??= this.#newArena(FIRST_ARENA));
-    let result = this.#call(name, ...before, arena, ...given);
-    for (let used = this.#used(arena); used > arena[1]; used = this.#used(arena)) {
-      arena = this.#arenas[name] = this.#newArena(MORE * used);
-      result = this.#call(name, ...before, arena, ...given);
-    }
+    const result = this.calls.inArena(name, before, ...given);
     this.#views.clear();
     return result;
-  }
-
-  /** @type {(words: number) => Span} */
-  #newArena(words) {
-    return [this.#reserve(words * WORD), words, WORD];
-  }
-
-  /** @type {(range: Span) => number} */
-  #used([address]) {
-    return new Uint32Array(this.#kernels.memory.buffer, address, 1)[0];
   }
 
   /** @type {() => AnyArray[]} */
