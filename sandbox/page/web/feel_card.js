@@ -31,6 +31,9 @@ export class FeelCard {
   /** Overshoot [1] and settling [s]; null until something was measured.
    * @type {Point | null} */
   #wanted = null;
+  /** The material of its springs; null: they are of several.
+   * @type {number | null} */
+  #material = null;
   // Why nothing can be sought; which handle is dragged.
   #refusal = '';
   #held = -1;
@@ -59,7 +62,7 @@ export class FeelCard {
     this.note = element('p', { className: 'says' });
     this.note.setAttribute('role', 'status');
     this.use = element('button', { type: 'button', textContent: 'Use', title: 'Set this Cs and Cd; undo takes it back', onclick: () => this.#use() });
-    this.take = element('button', { type: 'button', textContent: 'Copy as CSS', title: 'A transition that moves as the thing does', onclick: () => this.#copy() });
+    this.take = element('button', { type: 'button', textContent: 'Copy CSS', title: 'A transition that moves as the thing does', onclick: () => this.#copy() });
     const close = element('button', { type: 'button', textContent: 'Close', onclick: () => this.close() });
     box.append(this.title, this.said, element('div', { className: 'words' }, ...this.ways), this.chart,
       element('div', { className: 'fields' }, ...this.fields.map(({ label }) => label)),
@@ -112,7 +115,7 @@ export class FeelCard {
   #why() {
     if (this.toy.level.absent.includes('springs')) return FEEL.NO_HANDS;
     try {
-      materialOf(this.toy.world, this.#body);
+      this.#material = materialOf(this.toy.world, this.#body);
       return '';
     } catch (error) {
       return told(error);
@@ -168,10 +171,10 @@ export class FeelCard {
   /** @type {(found: Found) => string} */
   #pairText({ pair: [stiffness, damping] }) {
     const least = Math.max(Math.min(stiffness, damping), 1e-9), decimals = Math.max(3, 2 - Math.floor(Math.log10(least)));
-    const { world } = this.toy, material = materialOf(world, this.#body);
     const pair = `Cs ${stiffness.toFixed(decimals)}, Cd ${damping.toFixed(decimals)}`;
-    if (material === null) return FEEL.PAIR_OF_ALL.replace('{}', pair);
-    return FEEL.PAIR.replace('{}', pair).replace('{}', () => `"${world.names.material[material]}"`);
+    if (this.#material === null) return FEEL.PAIR_OF_ALL.replace('{}', pair);
+    const name = this.toy.world.names.material[this.#material];
+    return FEEL.PAIR.replace('{}', pair).replace('{}', () => `"${name}"`);
   }
 
   /** @type {(found: Found) => string} */
@@ -201,14 +204,13 @@ export class FeelCard {
   #seek() {
     if (!this.#wanted || !this.#copies || this.#refusal) return;
     this.#found = null;
-    const material = materialOf(this.toy.world, this.#body);
-    this.#begin(this.#copies.seek(this.#body, this.#way === 1, this.#wanted, material), FEEL.LOOKING);
+    this.#begin(this.#copies.seek(this.#body, this.#way === 1, this.#wanted, this.#material), FEEL.LOOKING);
   }
 
   #use() {
     const { toy } = this, found = this.#found;
     if (!found) return;
-    const [stiffness, damping] = found.pair, material = materialOf(toy.world, this.#body), { ramp_ticks: duration } = toy.level;
+    const [stiffness, damping] = found.pair, material = this.#material, { ramp_ticks: duration } = toy.level;
     const isDone = toy.run.submit({ type: 'set_coefficients', stiffness, damping, material, duration }, toy.run.newGesture(),
       (text) => { this.note.textContent = text; });
     if (!isDone) return;

@@ -210,7 +210,10 @@ class Page {
       this.#showBest();
     });
     // Both would leave little of the level.
-    on('outcome', () => { if (!byId('panel').hidden) this.#show('panel', 'tune'); });
+    on('outcome', () => {
+      if (!byId('panel').hidden) this.#show('panel', 'tune');
+      this.feel.close();
+    });
     on('draw', () => {
       this.#drawTime();
       this.keys.follow();
@@ -271,6 +274,7 @@ class Page {
     press(byId(button), !part.hidden);
     byId(button).setAttribute('aria-expanded', String(!part.hidden));
     this.panel.show();
+    if (id === 'panel' && !part.hidden) this.feel.close();
     // A tool is in hand as long as it is seen.
     const { tool } = this.toy.hands;
     if (id === 'makers' && part.hidden && (tool in MAKES || this.toy.hands.maker.makes(tool))) this.#choose('drag');
