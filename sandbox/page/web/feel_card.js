@@ -311,6 +311,10 @@ export class FeelCard {
     context.font = '11px system-ui, sans-serif';
     context.fillStyle = tone('--muted');
     context.strokeStyle = tone('--line');
+    // Within this band it is still.
+    context.globalAlpha = 0.25;
+    context.fillRect(LEFT, y(1 + RESPONSE.SETTLED), width - LEFT - RIGHT, y(1 - RESPONSE.SETTLED) - y(1 + RESPONSE.SETTLED));
+    context.globalAlpha = 1;
     context.textAlign = 'right';
     for (const way of [0, 1]) {
       line(context, [[x(0), y(way)], [x(span), y(way)]]);
