@@ -5,9 +5,16 @@ import json
 import pygame
 import pytest
 
+from sandbox.app.edit.clipboard import Clipboard
 from sandbox.level.document.canonical import level_text
+from sandbox.level.format.look import BodyLook
+from sandbox.level.format.picture import Picture
+from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.reading.files import parse_level
+from sandbox.level.reading.pictures import pictures_of
 from tests.app.conftest import small_level
+from tests.support.worn import four
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 
@@ -68,3 +75,20 @@ def test_what_is_no_level_is_refused_with_a_line(driver, text):
 def test_copying_nothing_is_said(driver):
     driver.key(pygame.K_c, CTRL)
     assert any("Nothing is selected" in text for text in driver.notices)
+
+
+def test_pictures_go_along_from_level_to_level(driver, monkeypatch):
+    monkeypatch.setattr(Clipboard, "pictures", {})
+    hat = Picture("hat.png", four((8, 8)))
+    look = BodyLook(picture=hat)
+    level = small_level(name="Guest")
+    jelly = JellyDef(type="jelly", id="head", shape={"box": (1.0, 1.0)}, spacing=0.5, look=look)
+    pygame.scrap.put_text(level_text(replaced(level, bodies=(jelly,))))
+    driver.key(pygame.K_v, CTRL)
+    driver.choose("Paste as parts of this level")
+    assert pictures_of(driver.editor.document.level) == {}
+    driver.key(pygame.K_z, CTRL)
+    monkeypatch.setattr(Clipboard, "pictures", {"hat.png": hat})
+    driver.key(pygame.K_v, CTRL)
+    driver.choose("Paste as parts of this level")
+    assert pictures_of(driver.editor.document.level)["hat.png"].data == hat.data

@@ -87,6 +87,29 @@ def test_a_level_whose_looks_are_known_has_nothing_to_be_found():
     assert [each for each in unknown_looks(parsed(level)) if each is not None] == []
 
 
+CORNERS, SIDES = [[0, 0], [1, 0], [0, 1]], [[0, 1], [1, 2], [0, 2]]
+
+
+CORNERS, SIDES = [[0, 0], [1, 0], [0, 1]], [[0, 1], [1, 2], [0, 2]]
+
+
+@pytest.mark.parametrize(
+    ("body", "wears"),
+    [
+        ({"type": "rope", "start": [0, 0], "end": [1, 0], "segments": 4}, False),
+        ({"type": "bridge", "start": [0, 0], "end": [4, 0], "segments": 6, "height": 0.5}, False),
+        ({"type": "mesh", "particles": CORNERS, "springs": SIDES}, False),
+        ({"type": "mesh", "particles": CORNERS, "springs": SIDES, "triangles": [[0, 1, 2]]}, True),
+        ({"type": "jelly", "shape": {"box": [1, 1]}, "spacing": 0.5}, True),
+        ({"type": "wheel", "radius": 0.5, "thickness": 0.1, "segments": 8}, True),
+    ],
+)
+def test_a_picture_that_nobody_sees_is_found(body, wears):
+    level = {**LEVEL, "bodies": [{"id": "b", **body, "look": {"picture": "hat.png"}}], "look": {}}
+    found = [each.text for each in unknown_looks(parsed(level)) if each is not None]
+    assert found == [] if wears else found[0].startswith('"b" shows no picture')
+
+
 def test_no_look_reaches_the_state_of_a_world():
     bare = json.loads(json.dumps(LEVEL))
     del bare["look"]

@@ -1,7 +1,8 @@
 """Clipboard: parts of a level and whole levels as JSON text, by way of the system's clipboard."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import ClassVar
 
 import pygame
 
@@ -13,11 +14,18 @@ from sandbox.editor.edits.deleting import delete
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.picture import Picture
 from sandbox.level.reading.files import parse_level
+from sandbox.level.reading.pictures import pictures_of, take_pictures
 
 
 class Clipboard:
-    """Copies and pastes for a screen; where the system has no clipboard, within the program."""
+    """Copies and pastes for a screen; where the system has no clipboard, within the program.
+
+    Text holds no pictures: those that were copied last go along within the program, from level to level.
+    """
+
+    pictures: ClassVar[Mapping[str, Picture]] = {}
 
     def __init__(self, screen: Editing, open_as_new: Callable[[Level], object]) -> None:
         self._screen, self._open = screen, open_as_new
@@ -30,6 +38,7 @@ class Clipboard:
             screen.say("Nothing is selected.")
             return False
         self._own = copy_text(screen.document)
+        Clipboard.pictures = pictures_of(screen.document.level)
         self._put(self._own)
         return True
 
@@ -40,6 +49,7 @@ class Clipboard:
 
     def copy_level(self) -> None:
         """Copy the whole level."""
+        Clipboard.pictures = pictures_of(self._screen.document.level)
         self._put(level_text(self._screen.document.level))
         self._screen.say("The whole level is on the clipboard, as JSON.")
 
@@ -53,6 +63,7 @@ class Clipboard:
         if level is None:
             self._paste_parts(text)
             return
+        take_pictures(level, self.pictures)
         choices = [
             ("Paste as parts of this level", lambda: self._paste_parts(text)),
             ("Open as a new level", lambda: self._open(level)),
@@ -64,7 +75,7 @@ class Clipboard:
         at = None if screen.pointer is None else screen.snapped(screen.camera.to_world(screen.pointer), 0).point
 
         def pasted(document: Document) -> Document:
-            return paste(document, text, at)
+            return paste(document, text, at, self.pictures)
 
         screen.edit("Paste", pasted)
 

@@ -5,7 +5,7 @@ them, the materials that they are made of, and the tick rate that these are for.
 pointer holds it by; of what is kept that is the middle of its lower edge.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import ContactsDef, Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import DEFAULT_MATERIAL, PARTICLE_LIMIT, SPRING_LIMIT, TEXT_LIMIT
+from sandbox.level.format.picture import Picture
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
 from sandbox.level.reading.parse import parse_level
@@ -42,11 +43,14 @@ def copy_text(document: Document) -> str:
     return level_text(fragment(document))
 
 
-def paste(document: Document, text: str, at: Point | None = None) -> Document:
+def paste(
+    document: Document, text: str, at: Point | None = None, pictures: Mapping[str, Picture] | None = None
+) -> Document:
     """Add what a text holds, a fragment or a whole level, and select it; at [m]: its middle, None = where it was.
 
-    Ids become free ones; materials of the same name and values are shared, others get a name of their own. Settings
-    checks and rules of a whole level are not taken. Raises EditError for a text that is no level, or is too large.
+    pictures: by the names that the text has for them; others are those of the document. Ids become free ones; materials
+    of the same name and values are shared, others get a name of their own. Settings, checks and rules of a whole level
+    are not taken. Raises EditError for a text that is no level, or is too large.
     """
     try:
         found = parse_level(text.encode("utf-8", "replace"), "what was copied")
@@ -54,7 +58,7 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
         raise EditError(error.faults[0]) from None
     if not (found.bodies or found.particles or found.terrain or found.zones):
         raise EditError("the copied level is empty")
-    take_pictures(found, pictures_of(document.level))
+    take_pictures(found, pictures_of(document.level) | dict(pictures or {}))
     return put_in(document, found, at)
 
 
