@@ -12,6 +12,7 @@ from sandbox.export.release import NoCurve
 from sandbox.level.assembly.build_world import LevelWorld, build_world
 from sandbox.level.reading.files import load_level
 from sandbox.physics.step import step
+from tests.page.axe import violations
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import TICKED, opened
@@ -119,6 +120,13 @@ def test_handles_are_dragged_and_escape_closes_the_card(browser, tmp_path):
     assert tab.evaluate(CARD)[1].split(" for the springs of ")[0].startswith("Cs ")
     tab.key("Escape")
     assert tab.evaluate("[page.feel.box.hidden, document.activeElement.id]") == [True, "picture"]
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_axe_finds_nothing_on_a_card(browser, tmp_path, scheme):
+    tab = card_in_page(browser, tmp_path, "low_door", "bridge.2", scheme=scheme)
+    tab.evaluate(CARD)
+    assert violations(tab) == []
 
 
 def test_what_has_no_curve_or_no_springs_says_so(browser, tmp_path):
