@@ -38,15 +38,17 @@ export class FeelCard {
   #refusal = '';
   #held = -1;
 
-  /** @param {HTMLElement} box @param {Toy} toy */
-  constructor(box, toy) {
+  /** speak: says it to who does not see the card.
+   * @param {HTMLElement} box @param {Toy} toy @param {(text: string) => void} speak */
+  constructor(box, toy, speak) {
     this.box = box;
     this.toy = toy;
+    this.speak = speak;
     this.title = element('h2');
     this.said = element('p', { className: 'says' });
-    this.said.setAttribute('role', 'status');
     this.chart = element('canvas', { className: 'curve' });
     this.chart.setAttribute('role', 'img');
+    this.chart.setAttribute('aria-label', 'No curve yet');
     this.ways = FEEL.WAYS.map((way, k) => element('button', { type: 'button', textContent: way, onclick: () => {
       this.#way = k;
       this.#measure();
@@ -60,7 +62,6 @@ export class FeelCard {
     this.bar = element('progress', { max: 1 });
     this.bar.setAttribute('aria-label', 'Measuring');
     this.note = element('p', { className: 'says' });
-    this.note.setAttribute('role', 'status');
     this.use = element('button', { type: 'button', textContent: 'Use', title: 'Set this Cs and Cd; undo takes it back', onclick: () => this.#use() });
     this.take = element('button', { type: 'button', textContent: 'Copy CSS', title: 'A transition that moves as the thing does', onclick: () => this.#copy() });
     const close = element('button', { type: 'button', textContent: 'Close', onclick: () => this.close() });
@@ -150,6 +151,7 @@ export class FeelCard {
     }
     this.#work = null;
     this.#show();
+    this.speak(`${this.said.textContent} ${this.note.textContent}`.trim());
   }
 
   /** @type {(made: Feel | Found) => void} */

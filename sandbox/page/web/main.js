@@ -78,7 +78,7 @@ class Page {
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), was: byId('end-was'), on: byId('end-on'), solved: byId('solved') });
     this.best = new Best(this.toy);
-    this.feel = new FeelCard(byId('feel'), this.toy);
+    this.feel = new FeelCard(byId('feel'), this.toy, (text) => this.ears.say(text));
     this.menu = new Menu(byId('menu'), this.toy, (particle) => this.#feelOf(particle));
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;

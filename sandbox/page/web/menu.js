@@ -79,8 +79,9 @@ export class Menu {
       this.#change(particle, word, { type: 'scale_mass', particle, factor })));
     // What touches nothing is stuck in nothing.
     const free = this.touches ? [button('free it', () => this.#change(particle, 'free', { type: 'free', particle }))] : [];
-    box.replaceChildren(...softness, ...weights, ...free, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
-      { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)), ...(spring < 0 ? [] : [button('how it feels', () => this.feel(particle))]));
+    const feel = spring < 0 ? [] : [button('how it feels', () => this.feel(particle))];
+    box.replaceChildren(...softness, ...weights, ...feel, ...free, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
+      { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)));
     box.setAttribute('aria-label', thingOf(world.names.particle[particle]));
     box.hidden = false;
     box.style.left = `${Math.max(8, Math.min(x, innerWidth - box.offsetWidth - 8))}px`;

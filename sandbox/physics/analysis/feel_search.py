@@ -17,7 +17,7 @@ from sandbox.physics.analysis.step_response import (
 )
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_floats
 from sandbox.physics.arrays import Floats
-from sandbox.physics.equation import HIGHEST_COEFFICIENT, highest_frequency, pole_match
+from sandbox.physics.equation import HIGHEST_COEFFICIENT, TURN, highest_frequency, pole_match
 from sandbox.physics.geometry.elementary import exponential, logarithm
 from sandbox.physics.jit import inner_kernel, kernel
 
@@ -203,7 +203,7 @@ def _aim(search: Floats, overshoot: float, settling: float, errors: Floats, resp
     asked, stiffness, damping = overshoot, 0.0, 0.0
     for _ in range(ROUNDS):
         # exp(-pi z / sqrt(1 - z^2)) of the overshoot, which a spring in ticks misses by a little.
-        fall = -logarithm(max(asked, UNSEEN)) / math.pi
+        fall = -2.0 * logarithm(max(asked, UNSEEN)) / TURN
         ratio = fall / math.sqrt(1.0 + fall * fall) if overshoot > UNSEEN else 1.0
         stiffness, damping = _settling_in(settling, ratio, errors, response)
         if stiffness < 0.0:

@@ -22,9 +22,9 @@ from sandbox.physics.state import State
 POKE, LEAST_PULL = 0.01, 1e-4
 # Longest wait for all to rest before the pull and while it lasts, and longest curve [s].
 MOST_BEFORE, MOST_HELD, MOST_SECONDS = 10.0, 10.0, 30.0
-# It rests once nothing of it moves further in a second than this share of the pull, three ticks in a row; so does the
-# curve, within a window of so long [s].
-STILL, STILL_TICKS, WINDOW = 1e-3, 3, 0.5
+# It rests once nothing of it moves further in a second than this share of the pull, three ticks in a row. The curve
+# rests where it stays as near for so long [s], or for this part of it: slow swings stand still as they turn.
+STILL, STILL_TICKS, WINDOW, WINDOW_PART = 1e-3, 3, 0.5, 0.3
 # What does not come back within this share of the pull has been moved for good.
 LEFT = 0.05
 # The share of the work that is the wait before the pull, and that of one pull.
@@ -233,7 +233,7 @@ def _note(release: Floats, still: Floats, x: float, y: float) -> None:
 
 @inner_kernel
 def _window(release: Floats) -> int:
-    return max(2, math.floor(WINDOW * release[RATE]))
+    return max(2, math.floor(WINDOW * release[RATE]), math.floor(WINDOW_PART * release[COUNT]))
 
 
 @inner_kernel
