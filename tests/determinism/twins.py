@@ -16,6 +16,7 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ from sandbox.physics.jit.translate.program import Signature, Translation, words_
 # Lines of Python that a call may run, and tries of arguments for each round.
 MOST_LINES, TRIES = 20_000, 12
 ARENA = 20_000
+# Rows that arrays have at times: a kernel may go by fixed places in one.
+LONG = 48
 SCALARS: dict[str, Any] = {"bool": ctypes.c_bool, "int64_t": ctypes.c_int64, "double": ctypes.c_double}
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-300, 1e300, math.inf, -math.inf, math.nan, 3.0, 1e-9)
 WHOLE = (-1, 0, 1, 2, 3, 7, 2**31, -(2**31))
@@ -134,7 +137,8 @@ class Maker:
             one[0] = 1
         else:
             wide = self.numbers.choice((2, 2, 14))
-            shape = (self.count + self.numbers.randint(0, 2), wide, wide)[: kind.dimensions]
+            rows = LONG if self.numbers.random() < 0.1 else self.count + self.numbers.randint(0, 2)
+            shape = (rows, wide, wide)[: kind.dimensions]
             values = [self.scalar({"FLAG": "bool"}.get(kind.item.cpp, kind.item.cpp)) for _ in range(math.prod(shape))]
             if kind.dtype in ("int32", "int8", "uint32"):
                 values = [min(max(value, 0), 100) for value in values]
@@ -185,8 +189,11 @@ def interpreted_call(function: Callable[..., Any], arguments: list[Any]) -> Any:
     # What kernels lay out themselves counts from no end either.
     vars(interpreted)["memoryview"] = Strict
     modules = [vars(module) for name, module in list(sys.modules.items()) if name.startswith("sandbox.")]
+    counting = [module for module in modules if module.get("math") is math]
     for module in modules:
         module["int"] = whole
+    for module in counting:
+        module["math"] = MATH
     sys.settrace(trace)
     try:
         return function(*arguments)
@@ -195,6 +202,8 @@ def interpreted_call(function: Callable[..., Any], arguments: list[Any]) -> Any:
         del vars(interpreted)["memoryview"]
         for module in modules:
             del module["int"]
+        for module in counting:
+            module["math"] = math
 
 
 def whole(value: Any) -> int:
@@ -203,6 +212,12 @@ def whole(value: Any) -> int:
     if not -(2**63) <= made < 2**63:
         raise OverflowError
     return made
+
+
+# The same of what rounds to whole numbers.
+MATH = SimpleNamespace(
+    **vars(math) | {"floor": lambda value: whole(math.floor(value)), "ceil": lambda value: whole(math.ceil(value))}
+)
 
 
 def same(one: Any, other: Any) -> bool:
