@@ -11,7 +11,7 @@ from sandbox.app.base import gamepads, loop, sag_map
 from sandbox.app.draw import colours, effects, looks, water
 from sandbox.app.draw.things import belt_marks, drawables, faces, level_slots, members, soft, wheels
 from sandbox.app.panel import engineers_rows, readings
-from sandbox.app.panel.feel import feel_work
+from sandbox.app.panel.feel import feel_curve, feel_page, feel_work
 from sandbox.app.play import hand_labels, stage
 from sandbox.app.run import playback
 from sandbox.app.sound import sound_events, voices, waves
@@ -109,6 +109,8 @@ def _of_feel() -> dict[str, dict[str, Any]]:
         ),
         "FEEL": {"HOOKE": LAW_HOOKE, "REASONS": release.REASONS, "CSS": curves.CSS}
         | _of(feel, "ALL_HOOKE", "FEELS", "REFUSALS", "AS_ASKED", "CLOSEST", "PAIR", "PAIR_OF_ALL")
+        | _of(feel_curve, "ABOVE", "BEHIND", "LEAST_ABOVE", "SHORTEST", "MOST_OVERSHOOT", "LEAST_TICKS")
+        | _of(feel_page, "MOST_SECONDS", "READINGS")
         | _of(feel_work, "HINT", "NO_HANDS", "MEASURING", "LOOKING", "WAYS"),
     }  # fmt: skip
 

@@ -10,11 +10,10 @@ import { FEEL, RESPONSE } from './shared.js';
 /** @import { Toy } from './toy.js' */
 /** @import { Point } from './types.js' */
 
-// Time of a frame for the work [ms]; how much more of time and way is shown than the curve takes, shortest and highest.
-const BUDGET = 12, BEHIND = 1.7, ABOVE = 1.5, SHORTEST = 0.2, LEAST_ABOVE = 0.35;
-// Around the chart, and of a handle [px]; what may be asked: overshoot, ticks and seconds until it is still.
-const LEFT = 44, RIGHT = 16, TOP = 12, BOTTOM = 20, HANDLE = 7, MOST_OVERSHOOT = 0.99, LEAST_TICKS = 3, MOST_SECONDS = 60;
-const READINGS = ['Frequency', 'Damping ratio', 'Swings seen', 'One spring is off by'];
+// How the window has it; and time of a frame for the work [ms].
+const { ABOVE, BEHIND, LEAST_ABOVE, LEAST_TICKS, MOST_OVERSHOOT, MOST_SECONDS, READINGS, SHORTEST } = FEEL, BUDGET = 12;
+// Around the chart, and of a handle [px].
+const LEFT = 44, RIGHT = 16, TOP = 12, BOTTOM = 20, HANDLE = 7;
 const DASH = '–';
 
 export class FeelCard {
